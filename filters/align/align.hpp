@@ -72,6 +72,10 @@ struct AlignResult {
 /// not go once around a centre, an upper side that cannot be decided, and sides that fit another choice of the corner
 /// better.
 ///
+/// A scale that differs from 1 by more than 1e-4 explains the residuals if it leaves less than a third of them (RMS),
+/// of three pairs less than a tenth. If `scale` is reported, such a result is doubtful. If with that scale the rotation
+/// would be certain, the refusal names the scale.
+///
 /// Cost: O(n). Metrics: `rms`, `largest-residual`, `residual` (numbered, of the first 100 target rows), `scale` if it
 /// is reported, `error-at-part` if there is a part.
 AlignResult align(const PointCloud& source, const PointCloud& target, const std::optional<AlignPart>& part,

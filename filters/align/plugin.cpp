@@ -23,7 +23,7 @@ std::optional<AlignPart> part_at(const Inputs& inputs) {
 
 SCANMILL_FILTER() {
     using P = AlignParams;
-    return Declare<P>("align", 2)
+    return Declare<P>("align", 3)
         .summary("Finds the rigid motion that carries points onto corresponding points.")
         .source("Kabsch 1978; Umeyama 1991; Wang 2006, chapter 5")
         .ties("A `first-corner` that is equally near to two corners is refused.")
@@ -34,8 +34,11 @@ SCANMILL_FILTER() {
                                       optional)
         .out<RigidTransform>("transform", "From the frame of the source to that of the target; it never scales.")
         .choice("scale", &P::scale,
-                {{"none", P::Scale::none, "The metric `scale` is not computed."},
-                 {"report", P::Scale::report, "The metric `scale` is the size of the target relative to the source."}},
+                {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` not computed."},
+                 {"report", P::Scale::report,
+                  "The metric `scale` is the size of the target relative to the source. The result is doubtful if this "
+                  "scale differs from 1 by more than 0.0001 and leaves less than a third of the residuals (of three "
+                  "pairs, less than a tenth)."}},
                 "The scale that would fit best, as a check of the units; the transform does not contain it.")
         .choice("correspondence", &P::correspondence,
                 {{"rows", P::Correspondence::rows, "Row i of the source belongs to row i of the target."},

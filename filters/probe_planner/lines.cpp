@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::probing {
@@ -155,8 +156,9 @@ std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& c
         if (is_chosen(type, choice)) lines.push_back(read_line(features, row));
     }
     if (lines.empty())
-        throw Error("there is no line to probe: the features have {} outer boundaries, {} holes and {} creases",
-                    counts[0], counts[1], counts[2])
+        throw Error("there is no line to probe: the features have {}, {} and {}",
+                    count_text(counts[0], "outer boundary", "outer boundaries"), count_text(counts[1], "hole", "holes"),
+                    count_text(counts[2], "crease", "creases"))
             .hint(features.polylines.empty()
                       ? "a closed mesh without sharp edges has no features; lower sharp-angle where they are found"
                       : "features: all takes every line");

@@ -52,13 +52,14 @@ FirstContact Machine::first_contact(const Vec3& touch, const Vec3& start, const 
         hint = nearest.slot;
         const double gap = std::sqrt(nearest.squared_distance) - probe_.radius;
         if (gap < precision * probe_.radius) {
-            const double distance = (tree_.nearest_point(centre, nearest.slot) - touch).norm();
+            const Vec3 point = tree_.nearest_point(centre, nearest.slot);
+            const double distance = (point - touch).norm();
             const bool is_edge = distance <= near && !stylus_meets(start, centre, 0);
-            return {is_edge ? ProbeContact::edge : ProbeContact::elsewhere, distance};
+            return {is_edge ? ProbeContact::edge : ProbeContact::elsewhere, distance, (centre - point).normalized()};
         }
         passed += std::max(gap, least_step * probe_.radius);
     }
-    return {ProbeContact::missed, ProbeTouch::nan};
+    return {ProbeContact::missed, ProbeTouch::nan, Vec3::Zero()};
 }
 
 Vec3 Machine::lifted(const Vec3& centre) const {

@@ -20,6 +20,7 @@ struct Probe {
 struct FirstContact {
     ProbeContact contact;
     double distance;  ///< from T to the point that the ball meets; NaN without one
+    Vec3 normal;  ///< from that point to the ball's centre, unit vector; 0 without one
 };
 
 class Machine {

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ProbePlannerParams;
-    return Declare<P>("probe-planner", 3)
+    return Declare<P>("probe-planner", 4)
         .summary("Plans where and from which direction a touch probe measures the edges of a part, and proves it.")
         .source("Wang 2006, chapter 5; both faces in closed form, collisions and order are our own")
         .ties("Of phi and -phi the one towards the left face; of equally near lines and touches the lower one.")
@@ -68,10 +68,11 @@ SCANMILL_FILTER() {
                 "Tried positions of reference points, 1,000 for each touch, for which a face is met before the edge; 0 "
                 "unless `approach` is given.",
                 headline, smaller_is_better)
-        .metric("wrong-contacts", Unit::count,
-                "Touches whose ball, moved against the mesh, does not meet it near the reference point first, or whose "
-                "stylus does; 0 unless `approach` is given.",
-                smaller_is_better)
+        .metric(
+            "wrong-contacts", Unit::count,
+            "Touches whose ball, moved against the mesh, does not meet it near the reference point first, or rests on "
+            "a face, or whose stylus meets the mesh; 0 unless `approach` is given.",
+            smaller_is_better)
         .metric("travel", Unit::length, "Length of all moves, approaches included.", headline, smaller_is_better)
         .metric("edge-roughness", Unit::length,
                 "How far the lines' vertices are beside smooth curves (95 % quantile); a part of scanner-error.",

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "probe_planner/contact_range.hpp"
@@ -17,6 +18,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/direction.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 
 namespace scanmill {
 
@@ -98,15 +100,6 @@ Settings settings_of(const ProbePlannerParams& params) {
     return settings;
 }
 
-void require_same_frame(const Frame& features, const Frame& mesh) {
-    if (features.unit != mesh.unit)
-        throw Error("the features are in {}, the mesh in {}", symbol(features.unit), symbol(mesh.unit))
-            .hint("wire both from one step: in: {features: surface.features, mesh: surface}");
-    if (!features.name.empty() && !mesh.name.empty() && features.name != mesh.name)
-        throw Error("the features are in the frame '{}', the mesh in the frame '{}'", features.name, mesh.name)
-            .hint("move both with apply-transform, or neither");
-}
-
 /// The mesh relative to the origin of the features.
 TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
     try {
@@ -130,6 +123,36 @@ TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
     return moved;
 }
 
+/// Throws Error if the mesh is closed and encloses a negative volume. `part` has the positions of `mesh` beside the
+/// features.
+void require_outward(const TriangleMesh& part, const TriangleMesh& mesh) {
+    double volume = 0;
+    BoundingBox box;
+    const Vec3& origin = part.positions[part.triangles[0][0]];
+    for (const auto& [a, b, c] : part.triangles) {
+        const Vec3 u = part.positions[a] - origin, v = part.positions[b] - origin, w = part.positions[c] - origin;
+        volume += u.dot(v.cross(w)) / 6;
+        for (const Vec3& corner : {u, v, w}) box.add(corner);
+    }
+    if (volume >= -rounding * std::pow(box.diagonal(), 3) || !topology(mesh).closed) return;
+    throw Error("the mesh is inside out: it encloses {:.4g} {}3, so that every convex edge is concave", volume,
+                symbol(mesh.frame.unit))
+        .hint("`repair` turns a closed mesh outwards; find the features on its result");
+}
+
+/// Throws Error if every reference point is too far from the mesh to be touched.
+void require_on_mesh(const ReferencePoints& references, const TriangleTree& mesh, const Settings& settings,
+                     LengthUnit unit) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const ReferencePoint& point : references.points) {
+        const double distance = std::sqrt(mesh.nearest(point.position).squared_distance);
+        if (distance <= settings.probe.radius + settings.error + 1.5 * point.segment_length) return;
+        least = std::min(least, distance);
+    }
+    throw Error("the lines are not on the mesh: the nearest is {:.4g} {} away", least, symbol(unit))
+        .hint("wire the mesh on which the features were found, in the same position; `apply-transform` moves either");
+}
+
 /// Plans the touches of one reference point.
 class TouchPlanner {
 public:
@@ -137,7 +160,7 @@ public:
         : settings_(settings),
           machine_(machine),
           reference_(reference),
-          edge_reach_(settings.error + 1.5 * reference.segment_length),
+          edge_reach_(settings.error + std::min(1.5 * reference.segment_length, settings.probe.radius)),
           near_(settings.probe.radius + edge_reach_),
           beyond_(std::min(reference.beyond, settings.error)) {
         bisector_ = (reference.left_normal + reference.right_normal).normalized();
@@ -243,10 +266,19 @@ private:
         if (!find_start(distance, touch)) return std::nullopt;
         const FirstContact first =
             machine_.first_contact(touch.position, touch.start, touch.approach, edge_reach_, r + settings_.error);
-        touch.contact = first.contact;
+        const bool is_on_face = first.contact == ProbeContact::edge && rests_on_face(first.normal);
+        touch.contact = is_on_face ? ProbeContact::elsewhere : first.contact;
         touch.contact_distance = first.distance;
-        if (!settings_.approach && first.contact != ProbeContact::edge) return std::nullopt;
+        if (!settings_.approach && touch.contact != ProbeContact::edge) return std::nullopt;
         return touch;
+    }
+
+    /// Whether a ball that is met in the direction `normal` rests on the left or right face, as it does where another
+    /// part continues the face beyond the line.
+    bool rests_on_face(const Vec3& normal) const {
+        const double cosine_1 = 0.99984769515639127;
+        return reference_.left_normal.dot(normal) > cosine_1 ||
+               (!reference_.assumed && reference_.right_normal.dot(normal) > cosine_1);
     }
 
     bool find_start(double distance, ProbeTouch& touch) const {
@@ -328,11 +360,9 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
             "raise scanner-error, or scan more finely",
             result.edge_roughness, settings.error));
     if (result.unreachable == touches)
-        context.doubt(
-            fmt::format("no touch can be made: of {} are {} concave, {} too narrow, {} too tilted and {} "
-                        "obstructed",
-                        count_text(touches, "touch", "touches"), result.concave, result.too_narrow, result.too_tilted,
-                        result.obstructed));
+        context.doubt(fmt::format("none of {} can be made: {} concave, {} too narrow, {} too tilted and {} obstructed",
+                                  count_text(touches, "touch", "touches"), result.concave, result.too_narrow,
+                                  result.too_tilted, result.obstructed));
 }
 
 }  // namespace
@@ -340,11 +370,13 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
 ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
                                  const ProbePlannerParams& params, Context& context) {
     const Settings settings = settings_of(params);
-    require_same_frame(features.frame, mesh.frame);
+    require_same_frame(features.frame, "the features are", mesh.frame, "the mesh");
     const TriangleMesh part = mesh_beside(mesh, features.frame);
+    require_outward(part, mesh);
     const Machine machine(part, settings.probe, context.threads());
-    const ReferencePoints references =
-        find_reference_points(features, settings.lines, settings.spacing, machine.mesh(), settings.error, context);
+    const ReferencePoints references = find_reference_points(features, settings.lines, settings.spacing, machine.mesh(),
+                                                             settings.error, settings.probe.radius, context);
+    require_on_mesh(references, machine.mesh(), settings, mesh.frame.unit);
 
     std::vector<std::vector<ProbeTouch>> planned(references.points.size());
     constexpr std::size_t chunk = 16;

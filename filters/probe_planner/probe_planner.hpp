@@ -53,8 +53,8 @@ struct ProbePlannerResult {
     std::size_t unreachable = 0, concave = 0, too_narrow = 0, too_tilted = 0, obstructed = 0;
     /// Tried positions of reference points, 1,000 per touch, for which a face is met before the edge.
     std::size_t false_touches = 0;
-    /// Touches whose ball, moved against the mesh, does not meet it near the reference point first, or whose stylus
-    /// meets it on the way. Only a given `approach` plans such ones.
+    /// Touches whose ball, moved against the mesh, does not meet it near the reference point first, or rests on a face
+    /// there, or whose stylus meets the mesh on the way. Only a given `approach` plans such ones.
     std::size_t wrong_contacts = 0;
     double travel = 0;  ///< length of all moves
     double edge_roughness = 0;
@@ -70,13 +70,14 @@ struct ProbePlannerResult {
 /// A touch gets the smallest |phi| for which: the ball meets the edge before a face for every position of the reference
 /// point within `scanner_error` (see contact_range.hpp; where there is none and the second face is assumed, for every
 /// position on the first face); the approach is tilted by at most `max_tilt`; ball and stylus do not meet the mesh
-/// elsewhere (within radius + scanner_error + 1.5 segment lengths of the reference point facets belong to the edge);
-/// the ball, moved against the mesh, meets it within scanner_error + 1.5 segment lengths of the reference point; and
-/// the start can be left along the machine's axis. Tried in steps of 1 degree; of phi and -phi the positive one,
-/// towards the left face, first. The start is h / cos phi from the reference point (at most 6 h), or up to 8 radii
-/// farther if the way up is not free there. Touches without such a phi stay in the plan with the first reason that
-/// applies: concave, too-narrow, too-tilted, obstructed. With `approach`, that phi is used; only concave edges, holes,
-/// tilt and collisions prevent the touch.
+/// elsewhere (within radius + reach of the reference point facets belong to the edge); the ball, moved against the
+/// mesh, meets it within the reach of the reference point, and not squarely on one of the two faces (to 1 degree), as
+/// where another part continues a face; and the start can be left along the machine's axis. The reach is scanner_error
+/// and 1.5 segment lengths, but at most the radius: creases of thinned scans zigzag by about a segment. Tried in steps
+/// of 1 degree; of phi and -phi the positive one, towards the left face, first. The start is h / cos phi from the
+/// reference point (at most 6 h), or up to 8 radii farther if the way up is not free there. Touches without such a phi
+/// stay in the plan with the first reason that applies: concave, too-narrow, too-tilted, obstructed. With `approach`,
+/// that phi is used; only concave edges, holes, tilt and collisions prevent the touch.
 ///
 /// Collisions are checked for the planned T only; raise `stylus_radius` by `scanner_error` for approaches from below.
 ///
@@ -89,7 +90,9 @@ struct ProbePlannerResult {
 /// counts above; a warning if the edge roughness exceeds `scanner_error`; a doubt if no touch can be made.
 ///
 /// Throws Error: a parameter out of range; features and mesh in different units or named frames; a mesh without
-/// triangles or with a vertex that is not finite; features as in find_reference_points().
+/// triangles or with a vertex that is not finite; a closed mesh with a negative volume; features as in
+/// find_reference_points(); lines of which every reference point is farther than radius + scanner_error + 1.5 segment
+/// lengths from the mesh.
 ///
 /// Deterministic: the same bytes for any number of threads. Cost: O((touches + triangles) log triangles + lines² +
 /// lines · touches on closed lines), about 0.05 ms per touch; obstructed touches, for which all directions are tried,

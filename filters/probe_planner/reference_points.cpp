@@ -153,7 +153,8 @@ double radius_of_hole(const Line& line) {
 }
 
 /// Replaces the faces and the edge of points at which the mesh shows others.
-void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, double error, const Context& context) {
+void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, double error, double radius,
+                 const Context& context) {
     constexpr double segments_near = 2, segments_apart = 1.5;
     constexpr std::size_t chunk = 64;
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -164,8 +165,10 @@ void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, 
             const double size =
                 std::max(point.segment_length, mean_edge_near(mesh, point.position, point.segment_length));
             const Vec3& right = point.assumed ? point.left_normal : point.right_normal;
+            // Farther than the ball reaches there are other edges.
+            const double reach = std::min(size, radius);
             const auto faces = edge_faces(mesh, {point.position, point.tangent, point.left_normal, right},
-                                          segments_near * size + error, segments_apart * size + error);
+                                          segments_near * reach + error, segments_apart * reach + error);
             if (!faces) continue;
             if (point.assumed) {
                 // The line runs along the edge, with its own face on the left.
@@ -284,7 +287,7 @@ double quantile(std::vector<double> numbers, double share) {
 }  // namespace
 
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
-                                      const TriangleTree& mesh, double error, const Context& context) {
+                                      const TriangleTree& mesh, double error, double radius, const Context& context) {
     const std::vector<Line> lines = chosen_lines(features, choice);
     context.check_cancelled();
     const Pairs pairs(lines, context);
@@ -323,7 +326,7 @@ ReferencePoints find_reference_points(const FeatureGraph& features, const LineCh
             result.chains.push_back({part.closed, begin, static_cast<u32>(result.points.size())});
         }
     }
-    fit_to_mesh(result.points, mesh, error, context);
+    fit_to_mesh(result.points, mesh, error, radius, context);
     leave_out_repeated(result, lengths, spacing, error, context);
     result.edge_roughness = quantile(std::move(distances), 0.95);
     return result;

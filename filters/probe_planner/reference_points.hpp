@@ -59,9 +59,10 @@ struct ReferencePoints {
 /// Runs of segments that match along half of the shorter run are paired: the one of the earlier line gets points on the
 /// intersection of the planes of both faces, the matching part of the other one none.
 ///
-/// Where the mesh within `error` and two segment lengths of a point (or two mean edge lengths there) shows other faces
-/// than the line does, the faces, the tangent and the point on the edge are the mesh's: see edge_fit.hpp. An assumed
-/// face is replaced if there is one beyond an edge along the line (to within 60 degrees) at 30 degrees or more.
+/// Where the mesh within `error` and two segment lengths of a point (or two mean edge lengths there; at most twice
+/// `radius`, the ball's) shows other faces than the line does, the faces, the tangent and the point on the edge are the
+/// mesh's: see edge_fit.hpp. An assumed face is replaced if there is one beyond an edge along the line (to within 60
+/// degrees) at 30 degrees or more.
 ///
 /// Then points are left out that are nearer than 3/4 spacing to a point of a longer line (ties: of an earlier one)
 /// on the same edge: at most `error` and 1.5 segment lengths beside its tangent, both normals within 30 degrees. So
@@ -72,6 +73,6 @@ struct ReferencePoints {
 /// normal that is not a unit vector, equal normals on both sides; more than 10^6 points.
 /// Cost: O(n log n) in the segments and points.
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
-                                      const TriangleTree& mesh, double error, const Context& context);
+                                      const TriangleTree& mesh, double error, double radius, const Context& context);
 
 }  // namespace scanmill::probing

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = VirtualProbeParams;
-    return Declare<P>("virtual-probe", 1)
+    return Declare<P>("virtual-probe", 2)
         .summary("Makes the touches of a probe plan against a mesh, as a measuring machine would.")
         .source("Wang 2006, chapter 5; sphere tracing: Hart 1996")
         .ties("None: of equally near triangles any gives the same contact.")
@@ -18,7 +18,9 @@ SCANMILL_FILTER() {
         .out<PointCloud>("points", "Measured points of the edges, compensated by the radius along `approach`.")
         .param("noise", &P::noise, "Standard deviation of the machine's error in each coordinate.", at_least(0))
         .param("reference-error", &P::reference_error,
-               "Reference points are moved at random across the edge, by at most this.", at_least(0))
+               "Reference points are moved at random across the edge, by at most this; below the radius of the plan's "
+               "ball.",
+               at_least(0))
         .metric("points", Unit::count, "Touches that met the mesh.", headline)
         .metric("missed", Unit::count, "Touches without contact.", headline, smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {

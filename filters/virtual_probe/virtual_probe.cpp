@@ -23,6 +23,9 @@ constexpr double contact = 1e-9;
 /// A ball that is still on its way after so many steps slides along a face, nearer than 1e-4 radii: contact, too.
 constexpr int most_steps = 100'000;
 
+/// A larger share of missed touches suggests that plan and mesh are of different parts or in different positions.
+constexpr double most_missed = 0.1;
+
 /// The centre of the ball at its first contact with the mesh, on the segment of length `length` from `start` along
 /// `motion`; nothing without contact, or if the ball meets the mesh at `start`. By sphere tracing: the mesh is at least
 /// its distance away.
@@ -111,14 +114,26 @@ void require_plan(const ProbePlan& plan, const TriangleMesh& mesh) {
     if (!(plan.radius > 0) || !std::isfinite(plan.radius))
         throw Error("the plan's ball has the radius {} u; it must be above 0", plan.radius)
             .hint("plan again with `probe-planner`");
-    if (plan.frame.unit != mesh.frame.unit)
-        throw Error("the plan is in {}, the mesh in {}; both need one unit", symbol(plan.frame.unit),
-                    symbol(mesh.frame.unit))
-            .hint("convert one of them (u: a unit that is not declared)");
-    if (!plan.frame.name.empty() && !mesh.frame.name.empty() && plan.frame.name != mesh.frame.name)
-        throw Error("the plan is in the frame '{}', the mesh in '{}'; both need one frame", plan.frame.name,
-                    mesh.frame.name)
-            .hint("`apply-transform` moves either");
+    require_same_frame(plan.frame, "the plan is", mesh.frame, "the mesh");
+}
+
+void require_guided(double reference_error, double radius) {
+    if (!(reference_error < radius))
+        throw Error(
+            "reference-error is {} u, the plan's ball has the radius {} u: a ball that is not larger than the "
+            "error cannot be guided",
+            number_text(reference_error), number_text(radius))
+            .hint("use a smaller reference-error, or plan with a larger ball");
+}
+
+void report(const VirtualProbeResult& result, std::size_t made, Context& context) {
+    context.metric("points", static_cast<double>(result.points.size()));
+    context.metric("missed", static_cast<double>(result.missed));
+    const double share = static_cast<double>(result.missed) / static_cast<double>(made);
+    if (share > most_missed)
+        context.doubt(fmt::format(
+            "{} of {} touches ({:.0f} %) missed the mesh: check that the plan is of this part, and in its position",
+            result.missed, made, 100 * share));
 }
 
 TriangleTree tree_of(const TriangleMesh& mesh, const Frame& frame, unsigned threads) {
@@ -145,6 +160,7 @@ VirtualProbeResult virtual_probe(const ProbePlan& plan, const TriangleMesh& mesh
     const double noise = length_of(params.noise, "noise");
     const double reference_error = length_of(params.reference_error, "reference-error");
     require_plan(plan, mesh);
+    require_guided(reference_error, plan.radius);
     const std::vector<u32> made = made_touches(plan);
     require_directions(plan, made);
     const TriangleTree tree = tree_of(mesh, plan.frame, context.threads());
@@ -177,7 +193,8 @@ VirtualProbeResult virtual_probe(const ProbePlan& plan, const TriangleMesh& mesh
     }
     result.missed = made.size() - result.rows.size();
     if (points.empty())
-        throw Error("none of {} met the mesh", count_text(made.size(), "touch", "touches"))
+        throw Error("{} missed the mesh",
+                    made.size() == 1 ? "the only touch" : fmt::format("all {} touches", made.size()))
             .hint("the plan and the mesh must be of one part, in one position; `apply-transform` moves either");
     result.points.frame = plan.frame;
     result.points.positions = std::move(points);
@@ -186,8 +203,7 @@ VirtualProbeResult virtual_probe(const ProbePlan& plan, const TriangleMesh& mesh
     columns.add(Column("touch", 1, Buffer<u32>(std::move(touch))));
     columns.add(Column("feature", 1, Buffer<u32>(std::move(feature))));
     columns.add(Column("approach", 3, Buffer<double>(std::move(approach))));
-    context.metric("points", static_cast<double>(result.points.size()));
-    context.metric("missed", static_cast<double>(result.missed));
+    report(result, made.size(), context);
     context.progress(1);
     return result;
 }

@@ -18,7 +18,7 @@ namespace scanmill {
 struct VirtualProbeParams {
     /// Standard deviation of the machine's error, in each coordinate.
     Length noise;
-    /// The largest distance, across the edge, by which a reference point is moved at random.
+    /// The largest distance, across the edge, by which a reference point is moved at random; below the ball's radius.
     Length reference_error;
 };
 
@@ -44,7 +44,8 @@ struct VirtualProbeResult {
 ///
 /// Throws Error for a mesh without triangles, with a NaN or infinite vertex or an index out of range; for a plan of
 /// another frame or unit than the mesh, without a touch that is made, with a radius that is not above 0 or directions
-/// that are not unit vectors; for negative or infinite lengths; and if every touch is missed.
+/// that are not unit vectors; for negative or infinite lengths; for a `reference_error` of the ball's radius or more;
+/// and if every touch is missed. Doubts its result if more than a tenth of the touches is missed.
 /// Deterministic: bytes depend on the seed, not on the number of threads; touches are made in parallel.
 /// Cost: O(log triangles) per step, and some ten steps per touch, more where the ball grazes the surface, 100,000 at
 /// most; sliding so long, nearer than 1e-4 radii, is contact.

@@ -44,13 +44,14 @@ inline std::vector<Vec3> with_noise(std::vector<Vec3> points, double sigma, Rand
 struct Aligned : AlignResult {
     Metrics metrics;
     std::vector<std::string> warnings;
+    std::vector<Doubt> doubts;
 };
 
 inline Aligned aligned(const PointCloud& source, const PointCloud& target, const AlignParams& params = {},
                        const std::optional<AlignPart>& part = {}) {
     Context context;
     AlignResult result = align(source, target, part, params, context);
-    return {std::move(result), context.metrics(), context.warnings()};
+    return {std::move(result), context.metrics(), context.warnings(), context.doubts()};
 }
 
 inline AlignParams in_rectangle(const Vec3& first_corner) {

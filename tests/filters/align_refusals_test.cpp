@@ -70,6 +70,22 @@ TEST(AlignRefusals, PairsOnALineWithNoise_AreRefused) {
     }
 }
 
+TEST(AlignRefusals, AWrongUnit_IsNamedBeforeTheRotation) {
+    Random random(4);
+    for (const auto& [scale, text] :
+         {std::pair(0.001, "the target is 0.001 times as large as the source: the residuals are 116.5 u RMS, and "),
+          std::pair(1000.0,
+                    "the target is 1000 times as large as the source: the residuals are 1.165e+05 u RMS, and ")}) {
+        std::vector<Vec3> scaled = plate();
+        for (Vec3& p : scaled) p *= scale;
+        EXPECT_THAT(refusal(cloud(plate()), cloud(moved(scaled, random_motion(random, 1)))).sentence(),
+                    testing::StartsWith(text));
+    }
+    // A line stays a line in another unit.
+    const std::vector<Vec3> line{{0, 0, 0}, {1, 2, 3}, {3, 6, 9}}, metres{{0, 0, 0}, {1e3, 2e3, 3e3}, {3e3, 6e3, 9e3}};
+    EXPECT_THAT(refusal(cloud(line), cloud(metres)).sentence(), HasSubstr("determine the rotation only"));
+}
+
 TEST(AlignRefusals, AMirrorImage_IsRefused) {
     std::vector<Vec3> solid = plate(), mirrored;
     solid.emplace_back(0, 0, 50);

@@ -140,10 +140,44 @@ TEST(Align, OneUnitIsTheOther_ScaleReportsIt) {
     std::vector<Vec3> inches = plate();
     for (Vec3& p : inches) p /= 25.4;
     const Error error = error_of([&] { aligned(cloud(plate()), cloud(inches)); });
-    EXPECT_THAT(error.hint(), HasSubstr("the best scale is 0.0393701"));
+    EXPECT_THAT(error.sentence(), HasSubstr("the target is 0.0393701 times as large as the source"));
 }
 
 // Rectangles.
+
+TEST(Align, AScaleThatExplainsTheResiduals_IsDoubtful) {
+    std::vector<Vec3> larger = plate();
+    for (Vec3& p : larger) p *= 1.01;
+    Random random(5);
+    const Aligned result = aligned(cloud(plate()), cloud(moved(larger, random_motion(random))));
+    ASSERT_EQ(result.doubts.size(), 1u);
+    EXPECT_THAT(
+        result.doubts[0].text,
+        testing::StartsWith("the target is 1.01 times as large as the source: the residuals are 1.166 u RMS, "));
+    EXPECT_THAT(result.doubts[0].text,
+                testing::EndsWith("with this scale; a unit is wrong, or the scanner is out of calibration"));
+    // Noise of 0.2 leaves some 0.24 RMS of 1.17.
+    EXPECT_EQ(aligned(cloud(with_noise(plate(), 0.1, random)), cloud(larger)).doubts.size(), 1u);
+    EXPECT_EQ(aligned(cloud(with_noise(plate(), 1, random)), cloud(larger)).doubts.size(), 0u) << "lost in the noise";
+    AlignParams unchecked;
+    unchecked.scale = AlignParams::Scale::none;
+    EXPECT_TRUE(aligned(cloud(plate()), cloud(larger), unchecked).doubts.empty());
+    EXPECT_TRUE(aligned(cloud(plate()), cloud(moved(plate(), random_motion(random)))).doubts.empty()) << "rounding";
+}
+
+TEST(Align, NoiseAlone_RarelyLooksLikeAScale) {
+    Random random(6);
+    std::vector<Vec3> many;
+    for (int i = 0; i < 10; ++i) many.emplace_back(random.uniform(0, 200), random.uniform(0, 120), 0);
+    const std::vector<Vec3> three{plate()[0], plate()[1], plate()[2]};
+    constexpr int trials = 20000;
+    for (const auto& [points, most] : {std::pair(plate(), 0.003), std::pair(three, 0.008), std::pair(many, 0.0005)}) {
+        int doubtful = 0;
+        for (int trial = 0; trial < trials; ++trial)
+            doubtful += !aligned(cloud(points), cloud(with_noise(points, 0.1, random))).doubts.empty();
+        EXPECT_LT(doubtful, most * trials) << points.size();
+    }
+}
 
 TEST(AlignRectangle, EveryOrderOfTheCorners_GivesTheSameMotion) {
     Random random(7);

@@ -68,6 +68,19 @@ TEST(ProbePlannerRefusals, Parameters) {
               "directions: 2 chooses both approaches; approach gives one");
 }
 
+/// One line of three segments along y with a crease's normals, and a square boundary.
+FeatureGraph two_lines() {
+    FeatureGraph graph;
+    graph.positions = {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(0, 3, 0),
+                       Vec3(5, 0, 0), Vec3(9, 0, 0), Vec3(9, 4, 0), Vec3(5, 4, 0)};
+    graph.polylines = {{FeatureType::outer_boundary, true, 0, 4}, {FeatureType::crease, false, 4, 8}};
+    graph.vertices = {4, 5, 6, 7, 0, 1, 2, 3};
+    const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ(), none = Vec3::Zero();
+    graph.left_normals = {z, z, z, z, z, z, z, none};
+    graph.right_normals = {none, none, none, none, x, x, x, none};
+    return graph;
+}
+
 TEST(ProbePlannerRefusals, PartsWithoutLines) {
     const ProbePlannerParams params = probe_of(1, 0.1, 2);
     const TriangleMesh sphere = geodesic_sphere(10, 8);
@@ -79,6 +92,8 @@ TEST(ProbePlannerRefusals, PartsWithoutLines) {
     EXPECT_EQ(error.sentence(),
               "there is no line to probe: the features have 0 outer boundaries, 0 holes and 12 creases");
     EXPECT_EQ(error.hint(), "features: all takes every line");
+    EXPECT_EQ(refusal(two_lines(), part(), holes).sentence(),
+              "there is no line to probe: the features have 1 outer boundary, 0 holes and 1 crease");
 }
 
 TEST(ProbePlannerRefusals, Meshes) {
@@ -98,29 +113,44 @@ TEST(ProbePlannerRefusals, Meshes) {
     EXPECT_THAT(refusal(features, torn, params).sentence(), HasSubstr("triangle 1 names vertex 9999; there are"));
     TriangleMesh other = part();
     other.frame.unit = LengthUnit::millimetre;
-    EXPECT_EQ(refusal(features, other, params).sentence(), "the features are in u, the mesh in mm");
+    EXPECT_EQ(refusal(features, other, params).sentence(), "the features are in u, the mesh in mm; both need one unit");
     other = part();
     other.frame.name = "scanner";
     FeatureGraph named = features;
     named.frame.name = "machine";
     EXPECT_EQ(refusal(named, other, params).sentence(),
-              "the features are in the frame 'machine', the mesh in the frame 'scanner'");
+              "the features are in the frame 'machine', the mesh in 'scanner'; both need one frame");
     other.frame.name = "machine";
     EXPECT_EQ(planned(named, other, params).plan.frame.name, "machine");
     EXPECT_EQ(planned(features, other, params).plan.frame.name, "machine") << "a name is kept";
 }
 
-/// One line of three segments along y with a crease's normals, and a square boundary.
-FeatureGraph two_lines() {
-    FeatureGraph graph;
-    graph.positions = {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(0, 3, 0),
-                       Vec3(5, 0, 0), Vec3(9, 0, 0), Vec3(9, 4, 0), Vec3(5, 4, 0)};
-    graph.polylines = {{FeatureType::outer_boundary, true, 0, 4}, {FeatureType::crease, false, 4, 8}};
-    graph.vertices = {4, 5, 6, 7, 0, 1, 2, 3};
-    const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ(), none = Vec3::Zero();
-    graph.left_normals = {z, z, z, z, z, z, z, none};
-    graph.right_normals = {none, none, none, none, x, x, x, none};
-    return graph;
+TEST(ProbePlannerRefusals, AMeshInsideOut) {
+    const auto reversed = [](TriangleMesh mesh) {
+        Array<Triangle> triangles;
+        for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, c, b});
+        mesh.triangles = std::move(triangles);
+        return mesh;
+    };
+    const ProbePlannerParams params = probe_of(1, 0.1, 2);
+    const TriangleMesh wrong = reversed(part());
+    const Error error = refusal(lines_of(wrong), wrong, params);
+    EXPECT_EQ(error.sentence(), "the mesh is inside out: it encloses -1000 u3, so that every convex edge is concave");
+    EXPECT_EQ(error.hint(), "`repair` turns a closed mesh outwards; find the features on its result");
+    const TriangleMesh hollow = joined(part(), reversed(box(Vec3::Constant(3), Vec3::Constant(7), 2)));
+    EXPECT_EQ(planned(hollow, params).concave, 24u) << "the edges of the cavity; the block itself is not inside out";
+    TriangleMesh open = wrong;
+    open.triangles = Buffer<Triangle>(Array<Triangle>(wrong.triangles.begin() + 1, wrong.triangles.end()));
+    EXPECT_NO_THROW(planned(open, params)) << "an open mesh has no inside";
+}
+
+TEST(ProbePlannerRefusals, LinesThatAreNotOnTheMesh) {
+    const ProbePlannerParams params = probe_of(1, 0.1, 2);
+    const TriangleMesh far = box(Vec3(110, 0, 0), Vec3(120, 10, 10), 2);
+    EXPECT_EQ(refusal(lines_of(far), part(), params).sentence(),
+              "the lines are not on the mesh: the nearest is 100 u away");
+    const TriangleMesh both = joined(part(), far);
+    EXPECT_EQ(planned(lines_of(both), part(), params).plan.touches.size(), 120u) << "some are";
 }
 
 template <class T>

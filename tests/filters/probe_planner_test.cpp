@@ -185,6 +185,41 @@ TEST(ProbePlanner, SlotNarrowerThanTheBallCanLean_IsObstructed) {
     EXPECT_EQ(result.metrics.find("obstructed")->value, static_cast<double>(result.obstructed));
 }
 
+TEST(ProbePlanner, SeamOfTwoParts_IsNoEdge) {
+    for (const int times : {0, 4}) {
+        const TriangleMesh mesh =
+            joined(box(Vec3::Zero(), Vec3::Constant(10), times), box(Vec3(10, 0, 0), Vec3(20, 10, 10), times));
+        ProbePlannerParams params = probe_of(0.5, 0.1, 1);
+        const Planned result = planned(mesh, params);
+        int of_seam = 0;
+        for (const ProbeTouch& touch : result.plan.touches) {
+            if (std::abs(touch.position.x() - 10) > 0.01) {
+                EXPECT_TRUE(touch.reason == ProbeReason::none || touch.reason == ProbeReason::too_tilted);
+                continue;
+            }
+            ++of_seam;
+            EXPECT_NE(touch.reason, ProbeReason::none) << touch.position.transpose();
+        }
+        EXPECT_EQ(of_seam, 80) << "of eight edges";
+        EXPECT_EQ(result.obstructed, 60u) << "the others are below";
+        params.approach = Angle::degrees(0);
+        EXPECT_EQ(planned(mesh, params).wrong_contacts + planned(mesh, params).obstructed, 60u);
+    }
+}
+
+TEST(ProbePlanner, OnAMeshOfLongEdges_ObstaclesFartherThanTheRadiusAreSeen) {
+    // A wall beside the edge x = 10 of a block of two triangles per face: its foot is 1.5 away.
+    const TriangleMesh mesh =
+        joined(box(Vec3::Zero(), Vec3(10, 10, 10), 0), box(Vec3(11.2, -5, 0), Vec3(14, 15, 30), 0));
+    const Planned result = planned(mesh, probe_of(0.5, 0.1, 5));
+    const Planned fine = planned(refined(mesh, 5), probe_of(0.5, 0.1, 5));
+    ASSERT_EQ(result.plan.touches.size(), fine.plan.touches.size());
+    for (std::size_t row = 0; row < fine.plan.touches.size(); ++row)
+        EXPECT_EQ(result.plan.touches[row].reason, fine.plan.touches[row].reason)
+            << result.plan.touches[row].position.transpose();
+    EXPECT_GT(result.obstructed, 0u);
+}
+
 TEST(ProbePlanner, GivenApproach_IsJudgedByItsFalseTouches) {
     ProbePlannerParams params = probe_of(2, 0.75, 0.05);
     params.features = ProbePlannerParams::Features::creases;
@@ -362,7 +397,7 @@ TEST(ProbePlanner, RoundHole_IsTooNarrowIfTheBallPassesItsAxis) {
     EXPECT_EQ(wide.plan.touches.size(), 10u);
     ASSERT_EQ(wide.doubts.size(), 1u);
     EXPECT_EQ(wide.doubts[0].text,
-              "no touch can be made: of 10 touches are 0 concave, 10 too narrow, 0 too tilted and 0 obstructed");
+              "none of 10 touches can be made: 0 concave, 10 too narrow, 0 too tilted and 0 obstructed");
     params.approach = Angle::degrees(10);  // steeper: 7.2 sin 35 deg = 4.13
     EXPECT_EQ(planned(features, plate, params).too_narrow, 0u);
     params.approach.reset();

@@ -53,6 +53,7 @@ ProbePlan plan_of(std::vector<ProbeTouch> touches, double radius = 2, double sca
 
 struct Probed : VirtualProbeResult {
     Metrics metrics;
+    std::vector<Doubt> doubts;
 };
 
 Probed probed(const ProbePlan& plan, const TriangleMesh& mesh, const VirtualProbeParams& params = {},
@@ -62,7 +63,7 @@ Probed probed(const ProbePlan& plan, const TriangleMesh& mesh, const VirtualProb
     options.seed = seed;
     Context context(options);
     VirtualProbeResult result = virtual_probe(plan, mesh, params, context);
-    return {std::move(result), context.metrics()};
+    return {std::move(result), context.metrics(), context.doubts()};
 }
 
 TEST(VirtualProbe, OnTheBisector_TheBallStopsOneRadiusAboveTheEdge) {
@@ -196,6 +197,19 @@ TEST(VirtualProbe, WithoutContact_OrInContactAtTheStart_ATouchIsMissed) {
     EXPECT_EQ(result.metrics.find("missed")->value, 3);
 }
 
+TEST(VirtualProbe, MoreThanATenthMissed_IsDoubtful) {
+    std::vector<ProbeTouch> touches;
+    for (u32 i = 0; i < 20; ++i) touches.push_back(touch_at({0, i < 18 ? 1.0 * i : 80, 0}, 0, i));
+    const Probed tenth = probed(plan_of(touches), wedge(1));
+    EXPECT_EQ(tenth.missed, 2u);
+    EXPECT_TRUE(tenth.doubts.empty()) << "exactly a tenth";
+    touches[0].position.y() = touches[0].start.y() = 80;
+    const Probed more = probed(plan_of(touches), wedge(1));
+    ASSERT_EQ(more.doubts.size(), 1u);
+    EXPECT_EQ(more.doubts[0].text,
+              "3 of 20 touches (15 %) missed the mesh: check that the plan is of this part, and in its position");
+}
+
 TEST(VirtualProbe, ABallThatSlidesAlongAWall_DoesNotTakeForever) {
     // A wall at x = r plus some 1e-9 radii beside the path down to the edge.
     TriangleMesh mesh = wedge(1);
@@ -233,7 +247,9 @@ TEST(VirtualProbeRefusals, PlansWithoutTouches) {
     plan.touches[0].reason = ProbeReason::obstructed;
     EXPECT_EQ(refusal(plan, wedge(1)).sentence(), "the plan has 1 touch, of which none is made");
     EXPECT_EQ(refusal(plan_of({}), wedge(1)).sentence(), "the plan has 0 touches, of which none is made");
-    EXPECT_EQ(refusal(plan_of({touch_at({0, 300, 0}, 0)}), wedge(1)).sentence(), "none of 1 touch met the mesh");
+    EXPECT_EQ(refusal(plan_of({touch_at({0, 300, 0}, 0)}), wedge(1)).sentence(), "the only touch missed the mesh");
+    EXPECT_EQ(refusal(plan_of({touch_at({0, 300, 0}, 0), touch_at({0, 301, 0}, 0)}), wedge(1)).sentence(),
+              "all 2 touches missed the mesh");
 }
 
 TEST(VirtualProbeRefusals, LengthsRadiusAndDirections) {
@@ -244,6 +260,12 @@ TEST(VirtualProbeRefusals, LengthsRadiusAndDirections) {
     error.reference_error = nan;
     EXPECT_EQ(refusal(plan, wedge(1), noise).sentence(), "noise is -1 u; it must be 0 or more");
     EXPECT_EQ(refusal(plan, wedge(1), error).sentence(), "reference-error is nan u; it must be 0 or more");
+    error.reference_error = 2;
+    EXPECT_EQ(refusal(plan, wedge(1), error).sentence(),
+              "reference-error is 2 u, the plan's ball has the radius 2 u: a ball that is not larger than the error "
+              "cannot be guided");
+    error.reference_error = 1.9;
+    EXPECT_EQ(probed(plan, wedge(1), error).missed, 0u);
     EXPECT_EQ(refusal(plan_of({touch_at({0, 0, 0}, 0)}, 0), wedge(1)).sentence(),
               "the plan's ball has the radius 0 u; it must be above 0");
     ProbePlan crooked = plan, endless = plan, lengthwise = plan;

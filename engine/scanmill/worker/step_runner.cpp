@@ -53,6 +53,15 @@ const Value* first_geometric(const std::vector<StepInput>& inputs) {
     return found == inputs.end() ? nullptr : &found->value;
 }
 
+/// What relative lengths refer to: the first geometric input with positions, since features may have none; without
+/// one, the first geometric input. Null without any.
+const Value* measured_input(const std::vector<StepInput>& inputs) {
+    const auto found = std::ranges::find_if(inputs, [](const StepInput& input) {
+        return is_geometric(input.value.kind()) && !positions_of(input.value).empty();
+    });
+    return found == inputs.end() ? first_geometric(inputs) : &found->value;
+}
+
 /// The unit of all inputs that declare one. Throws Error when two differ.
 LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     const StepInput* first = nullptr;
@@ -257,8 +266,8 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
         // Without a geometric input, the filter resolves lengths against its own result.
         std::vector<std::string> warnings;
         ResolvedParameters resolved{step.parameters, {}};
-        if (first) {
-            LengthScale scale = length_scale(*first, adding_to(warnings));
+        if (const Value* measured = measured_input(comparable)) {
+            LengthScale scale = length_scale(*measured, adding_to(warnings));
             scale.unit = unit;
             resolved = resolved_parameters(step, scale);
         }

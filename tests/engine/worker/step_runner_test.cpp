@@ -141,6 +141,23 @@ TEST_F(ReaderStep, ChosenLengthWithoutAMeasure_IsRefusedThoughItIsNotRead) {
     EXPECT_THAT(refusal(one_place_).sentence(), HasSubstr("needs a scan of known unit"));
 }
 
+TEST_F(ReaderStep, RelativeLengths_ReferToTheFirstInputWithPositions) {
+    const auto cloud = [](Array<Vec3> positions) {
+        PointCloud points;
+        points.positions = std::move(positions);
+        return Value(std::make_shared<const PointCloud>(std::move(points)));
+    };
+    set("reads", std::string("tolerance"));
+    const Value empty = cloud({}), large = cloud({Vec3(0, 0, 0), Vec3(3, 4, 0)}),
+                small = cloud({Vec3(), Vec3(1, 0, 0)});
+    EXPECT_DOUBLE_EQ(sum_of({{"near", empty}, {"points", large}}), 0.5);
+    EXPECT_DOUBLE_EQ(sum_of({{"points", small}, {"near", large}}), 0.1);
+    EXPECT_THAT(test::error_of([&] {
+                    sum_of({{"near", empty}, {"points", empty}});
+                }).sentence(),
+                HasSubstr("10 %diag cannot be resolved"));
+}
+
 TEST_F(ReaderStep, Lengths_HaveTheUnitOfTheOnlyInputThatDeclaresOne) {
     PointCloud cloud;
     cloud.positions = Array<Vec3>(one_place_.begin(), one_place_.end());
