@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "scanmill/base/random.hpp"
+#include "scanmill/formats/files.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace {
