@@ -271,16 +271,27 @@ private:
     /// The same: where nothing else helps the surface follows the mesh.
     bool loosen_rest() {
         is_loosening_ = true;
-        std::vector<Edge> edges;
+        std::vector<Edge> edges, half_pointed;
         for (const auto& numbers : {doubtful_, hull.faults.inverted})
-            for (const u32 e : numbers)
-                if (!hull.edges[e].is_straight) edges.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
+            for (const u32 e : numbers) {
+                const HullEdge& edge = hull.edges[e];
+                if (edge.is_straight) continue;
+                const bool is_half_pointed = edge.is_sharp && is_pointed(edge.a) != is_pointed(edge.b);
+                (is_half_pointed ? half_pointed : edges).push_back(make_edge(edge.a, edge.b));
+            }
         if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
+        // A crease that leaves a tip along its edge is straight up to the middle, so that its other end needs no tip.
+        if (!half_pointed.empty()) {
+            repairs.bisected += bisect_straight(mesh_, half_pointed);
+            return true;
+        }
         open_doubtful();
         if (repairs.pointed == 0) return false;
         crossing = crossing_triangles(weights.patches, context_);
         return loosen(mesh_, {}, crossing, repairs);
     }
+
+    bool is_pointed(u32 vertex) const { return vertex < mesh_.pointed.size() && mesh_.pointed[vertex]; }
 
     void open_doubtful() {
         while (!doubtful_.empty()) {

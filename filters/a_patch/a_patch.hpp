@@ -76,9 +76,11 @@ struct APatchResult {
 /// times, unless less than half of the places are repaired so. Where a crease leaves the tetrahedra beside its edge,
 /// the edge is bisected, in two rounds, unless less than half of these edges are repaired so; then the normals at its
 /// ends are turned along the edges; then sharp edges become smooth that are below 30 degrees or between normals that
-/// differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip there. Where that does
-/// not help either, the surface follows the mesh: edges between such vertices become sharp and straight. The same is
-/// done where a tessellation with tips intersects itself. Where a fit causes an intersection, it is undone.
+/// differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip there. A crease that
+/// leaves the tetrahedra between a tip and another vertex is made straight from the tip to the middle of its edge,
+/// which is bisected. Where tips do not help, the surface follows the mesh: edges between such vertices become sharp
+/// and straight. The same is done where a tessellation with tips intersects itself. Where a fit causes an intersection,
+/// it is undone.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
 ///       triangle, not cut along edges at one position. The surface ends at a boundary, with a warning. `points`, if

@@ -8,7 +8,7 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 5)
+    return Declare<P>("a-patch", 6)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(

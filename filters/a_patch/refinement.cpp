@@ -34,8 +34,10 @@ LongEdge longest_edge(const TriangleMesh& mesh, u32 triangle) {
     return longest;
 }
 
+enum class Middle { of_curve, of_segment };  ///< where the new vertex is
+
 /// Bisects those of the edges, longest first, whose triangles are not cut yet. Returns how many.
-std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges) {
+std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle middle_is) {
     TriangleMesh& mesh = patch_mesh.mesh;
     CornerNormals& normals = patch_mesh.normals;
     const Array<u32> opposites = half_edges::opposites(mesh);
@@ -88,7 +90,8 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges) {
             new_normals[side] = (sum - tangent * (tangent.dot(sum) / tangent.squaredNorm())).normalized();
         }
         positions.push_back((positions[a] + positions[b]) / 2 + (at_b - at_a) / 8);
-        if (!is_sound(half, new_normals[0]) || (!is_border && !is_sound(other, new_normals[1]))) {
+        if (middle_is == Middle::of_segment || !is_sound(half, new_normals[0]) ||
+            (!is_border && !is_sound(other, new_normals[1]))) {
             positions.back() = (positions[a] + positions[b]) / 2;
             const Vec3 first = face_normal(half / 3), second = is_border ? Vec3(Vec3::Zero()) : face_normal(other / 3);
             new_normals = {is_sharp ? first : (first + second).normalized(),
@@ -124,10 +127,12 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges) {
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles) {
     std::vector<LongEdge> edges;
     for (const u32 triangle : triangles) edges.push_back(longest_edge(mesh.mesh, triangle));
-    return bisect(mesh, std::move(edges));
+    return bisect(mesh, std::move(edges), Middle::of_curve);
 }
 
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
+namespace {
+
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle_is) {
     std::vector<Edge> sought(edges.begin(), edges.end());
     std::ranges::sort(sought);
     std::vector<LongEdge> found;
@@ -136,7 +141,17 @@ std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
         if (a < b && std::ranges::binary_search(sought, make_edge(a, b)))
             found.push_back({(mesh.mesh.positions[b] - mesh.mesh.positions[a]).squaredNorm(), make_edge(a, b), half});
     }
-    return bisect(mesh, std::move(found));
+    return bisect(mesh, std::move(found), middle_is);
+}
+
+}  // namespace
+
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
+    return bisect_edges(mesh, edges, Middle::of_curve);
+}
+
+std::size_t bisect_straight(PatchMesh& mesh, std::span<const Edge> edges) {
+    return bisect_edges(mesh, edges, Middle::of_segment);
 }
 
 }  // namespace scanmill::a_patches

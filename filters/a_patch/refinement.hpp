@@ -17,4 +17,7 @@ std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 /// The same for edges.
 std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges);
 
+/// The same, at the middles of the segments, with the normals of the triangles there.
+std::size_t bisect_straight(PatchMesh& mesh, std::span<const Edge> edges);
+
 }  // namespace scanmill::a_patches

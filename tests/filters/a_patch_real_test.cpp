@@ -324,6 +324,25 @@ INSTANTIATE_TEST_SUITE_P(
         CreaseCase{"8-derived/golf_club.ply", "8-derived/golf_club_sharp_edges.txt", 1, 0.6, 0.99},
         CreaseCase{"3-mechanical/anchor_dense.off", "", 1, 0.65, 1}));
 
+TEST(APatchRealCreases, BesideTips_NeedNoFurtherTips) {
+    // Coarse, so that some of its creases leave their edges.
+    SCANMILL_REAL_SCAN(path, fetched_data, "meshes/fandisk.off");
+    const TriangleMesh mesh = *read_mesh(path);
+    DecimateParams reduction;
+    reduction.max_error = 0.01 * surface_box(mesh).diagonal();
+    Context context;
+    const TriangleMesh light = decimate(mesh, nullptr, reduction, context).mesh;
+    PointCloud points;
+    points.frame = mesh.frame;
+    points.positions = mesh.positions;
+    const PatchRun run = patched(light, {}, &points, 2);
+    EXPECT_GT(run.result.repairs.pointed, 0u);
+    EXPECT_LE(10 * run.result.repairs.pointed, run.result.mesh.positions.size());
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_EQ(topology(tessellate(run.result.patches, {8, {}}, context)).euler, topology(light).euler);
+}
+
 TEST(APatchRealCreases, OfAnAnchor_AreNearTheOriginalEdges_AndAsSharp) {
     SCANMILL_REAL_SCAN(path, shared_data, "3-mechanical/anchor_dense.off");
     const TriangleMesh mesh = *read_mesh(path);

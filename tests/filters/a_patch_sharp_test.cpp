@@ -184,6 +184,38 @@ TEST(APatchSharp, OfEquallyLongEdges_TheOneWithTheLowerVerticesIsBisected) {
     }
 }
 
+TEST(APatchSharp, AnEdgeBisectedStraight_HasTheNormalsOfItsTrianglesInTheMiddle) {
+    // Of a curved rim, whose normals at the ends turn.
+    const TriangleMesh rim = cylinder(8);
+    a_patches::PatchMesh mesh;
+    mesh.mesh.positions = rim.positions;
+    mesh.mesh.triangles = rim.triangles;
+    mesh.mesh.sharp_edges = rim.sharp_edges;
+    const auto given = rim.face_columns.find("corner-normals")->values<double>();
+    for (std::size_t f = 0; f < rim.triangles.size(); ++f)
+        mesh.normals.push_back({Eigen::Map<const Vec3>(given.data() + 9 * f),
+                                Eigen::Map<const Vec3>(given.data() + 9 * f + 3),
+                                Eigen::Map<const Vec3>(given.data() + 9 * f + 6)});
+    const Edge edge = rim.sharp_edges[0];
+    EXPECT_EQ(a_patches::bisect_straight(mesh, std::vector<Edge>{edge}), 1u);
+    const auto middle = static_cast<u32>(rim.positions.size());
+    ASSERT_EQ(mesh.mesh.positions.size(), middle + 1u);
+    const Vec3 &a = rim.positions[edge[0]], &b = rim.positions[edge[1]];
+    EXPECT_LT((mesh.mesh.positions[middle] - (a + b) / 2).norm(), 1e-15);
+    EXPECT_EQ(mesh.mesh.triangles.size(), rim.triangles.size() + 2);
+    EXPECT_EQ(mesh.mesh.sharp_edges.size(), rim.sharp_edges.size() + 1);
+    const std::vector<Vec3> of_triangles = a_patches::triangle_normals(mesh.mesh);
+    std::size_t corners = 0;
+    for (std::size_t f = 0; f < mesh.mesh.triangles.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (mesh.mesh.triangles[f][i] != middle) continue;
+            ++corners;
+            EXPECT_LT((mesh.normals[f][i] - of_triangles[f]).norm(), 1e-12);
+            EXPECT_LT(std::abs(mesh.normals[f][i].dot(b - a)), 1e-15);
+        }
+    EXPECT_EQ(corners, 4u);
+}
+
 TEST(APatchSharp, TrianglesFoldedOntoEachOther_ShareASharpEdge) {
     const PatchRun run = patched(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1.1, 1e-3}}, {{0, 1, 2}, {1, 0, 3}}));
     ASSERT_EQ(run.result.mesh.sharp_edges.size(), 1u);
