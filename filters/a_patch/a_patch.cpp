@@ -130,9 +130,9 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
         GivenNormals given = given_normals(mesh, sectors);
         require_outward(given.normals, normals);
         if (given.several > 0)
-            context.warn(fmt::format("{} no sharp edge separates get their mean",
-                                     count_text(given.several, "group of different corner normals that",
-                                                "groups of different corner normals that")));
+            context.warn(
+                fmt::format("at {} the corner normals differ where no sharp edge separates them; their mean is taken",
+                            count_text(given.several, "vertex", "vertices")));
         // A corner without a normal is the tip of a cone, unless the triangles are folded there.
         const std::vector<std::vector<u32>> corners = corners_of(sectors);
         const std::vector<Vec3> of_triangles = triangle_normals(mesh);

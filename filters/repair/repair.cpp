@@ -355,12 +355,13 @@ private:
         }
         const auto is_small = [&](u32 t) { return areas[components.find(t)] < share * whole; };
         std::size_t count = 0;
-        double largest = 0;
+        double largest = 0, largest_small = 0;
         for (u32 t = 0; t < triangles_.size(); ++t) {
             if (components.find(t) == t) {
                 ++count;
                 largest = std::max(largest, areas[t]);
                 result_.removed_components += is_small(t);
+                if (is_small(t)) largest_small = std::max(largest_small, areas[t]);
             }
             if (is_small(t)) {
                 ++result_.small;
@@ -373,6 +374,12 @@ private:
                 "{:.3g} % are needed",
                 count, 100 * largest / whole, 100 * share)
                 .hint("lower min-component; if the mesh is a soup of separate triangles, raise stitch");
+        if (result_.small > 0)
+            context_.warn(fmt::format(
+                "{} of {} removed, with {}: each has less than {:g} % of the area, the largest "
+                "{:.2g} %",
+                result_.removed_components, count_text(count, "component is", "components are"),
+                count_text(result_.small, "triangle", "triangles"), 100 * share, 100 * largest_small / whole));
         keep([&](std::size_t t) { return !is_small(static_cast<u32>(t)); });
     }
 

@@ -15,6 +15,7 @@ SCANMILL_FILTER() {
         .out<TriangleMesh>("mesh",
                            "Triangles with `patch`, the row of the mesh's triangle, `side`, 1 outside the mesh, and "
                            "beside creases `corner-normals`; vertices with `normal`; the creases are sharp edges.")
+        .adds({"normal", "patch", "side", "corner-normals"})
         .param("subdivision", &P::subdivision,
                "Segments per edge of the mesh; with max-error the most, as a power of two.", at_least(1), at_most(1024))
         .param("max-error", &P::max_error,

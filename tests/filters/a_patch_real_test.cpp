@@ -283,6 +283,7 @@ TEST_P(APatchRealObject, Decimated_HasItsCreases) {
             u32 a = 0, b = 0;
             if (row >> a >> b) edges.push_back(make_edge(a, b));
         }
+        ASSERT_EQ(edges.size(), 568u);
         std::ranges::sort(edges);
         mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
     }

@@ -184,6 +184,83 @@ TEST(APatchSharp, OfEquallyLongEdges_TheOneWithTheLowerVerticesIsBisected) {
     }
 }
 
+/// The exact sphere with these edges sharp. Its patches join as smoothly as before: the normals of both sides are
+/// equal.
+TriangleMesh sphere_with_sharp(std::vector<Edge> edges) {
+    TriangleMesh mesh = exact_sphere(2);
+    std::ranges::sort(edges);
+    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
+    return mesh;
+}
+
+/// How far the middles of the mesh's triangles are from the sphere, at most.
+double mesh_distance(const TriangleMesh& mesh) {
+    double farthest = 0;
+    for (const Triangle& t : mesh.triangles)
+        farthest = std::max(farthest,
+                            -sphere_distance((mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3));
+    return farthest;
+}
+
+TEST(APatchSharp, TwoSharpEdgesThatMeetAtAnAngle_HaveASurface) {
+    const Triangle t = exact_sphere(2).triangles[0];
+    const TriangleMesh mesh = sphere_with_sharp({make_edge(t[0], t[1]), make_edge(t[0], t[2])});
+    const PatchRun run = patched(mesh);
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_EQ(run.result.repairs.pointed, 0u);
+    Execution execution;
+    const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, execution);
+    EXPECT_TRUE(topology(fine).closed);
+    for (const Vec3& p : fine.positions) EXPECT_LT(std::abs(sphere_distance(p)), mesh_distance(mesh));
+}
+
+TEST(APatchSharp, SharpEdgesThatFormNoChain_HaveASurfaceAlsoFitted) {
+    // Single edges, forks and ends, here and there.
+    const TriangleMesh sphere = exact_sphere(2);
+    Random random(3);
+    std::vector<Edge> edges;
+    for (const Triangle& t : sphere.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (t[i] < t[(i + 1) % 3] && random.uniform() < 0.15) edges.push_back(make_edge(t[i], t[(i + 1) % 3]));
+    ASSERT_GT(edges.size(), 10u);
+    const TriangleMesh mesh = sphere_with_sharp(edges);
+    const PointCloud points = random_sphere(5000, 5);
+    for (const PointCloud* cloud : {static_cast<const PointCloud*>(nullptr), &points}) {
+        const PatchRun run = patched(mesh, {}, cloud);
+        EXPECT_EQ(run.result.inverted, 0u);
+        EXPECT_EQ(run.result.sign_violations, 0u);
+        Execution execution;
+        const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, execution);
+        EXPECT_TRUE(topology(fine).closed);
+        EXPECT_EQ(topology(fine).euler, 2);
+        for (const Vec3& p : fine.positions) EXPECT_LT(std::abs(sphere_distance(p)), mesh_distance(mesh));
+    }
+}
+
+TEST(APatchSharp, ContradictoryNormalsAtAVertex_GetTheirMeanWithAWarning) {
+    TriangleMesh mesh = exact_sphere(2);
+    const auto given = mesh.face_columns.find("corner-normals")->values<double>();
+    Array<double> normals(given.begin(), given.end());
+    const u32 v = mesh.triangles[0][0];
+    const Vec3 along = mesh.positions[v].unitOrthogonal();
+    double sign = 0.3;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (mesh.triangles[f][i] == v) {
+                const Vec3 turned = (mesh.positions[v].normalized() + sign * along).normalized();
+                std::copy_n(turned.data(), 3, normals.data() + 9 * f + 3 * i);
+                sign = -sign;
+            }
+    mesh.face_columns = {};
+    mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(normals))));
+    const PatchRun run = patched(mesh);
+    EXPECT_THAT(
+        run.warnings,
+        testing::Contains(HasSubstr("at 1 vertex the corner normals differ where no sharp edge separates them")));
+    expect_sound(run);
+}
+
 TEST(APatchSharp, AnEdgeBisectedStraight_HasTheNormalsOfItsTrianglesInTheMiddle) {
     // Of a curved rim, whose normals at the ends turn.
     const TriangleMesh rim = cylinder(8);
