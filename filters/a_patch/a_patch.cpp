@@ -263,7 +263,7 @@ private:
             return true;
         }
         ++crease_rounds_;
-        repairs.bisected += bisect_edges(mesh_, creases);
+        repairs.bisected += bisect_edges(mesh_, creases, Middle::of_curve);
         level_normals(mesh_);
         return true;
     }
@@ -276,13 +276,13 @@ private:
             for (const u32 e : numbers) {
                 const HullEdge& edge = hull.edges[e];
                 if (edge.is_straight) continue;
-                const bool is_half_pointed = edge.is_sharp && is_pointed(edge.a) != is_pointed(edge.b);
+                const bool is_half_pointed = edge.is_sharp && mesh_.is_pointed(edge.a) != mesh_.is_pointed(edge.b);
                 (is_half_pointed ? half_pointed : edges).push_back(make_edge(edge.a, edge.b));
             }
         if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
         // A crease that leaves a tip along its edge is straight up to the middle, so that its other end needs no tip.
         if (!half_pointed.empty()) {
-            repairs.bisected += bisect_straight(mesh_, half_pointed);
+            repairs.bisected += bisect_edges(mesh_, half_pointed, Middle::of_segment);
             return true;
         }
         open_doubtful();
@@ -290,8 +290,6 @@ private:
         crossing = crossing_triangles(weights.patches, context_);
         return loosen(mesh_, {}, crossing, repairs);
     }
-
-    bool is_pointed(u32 vertex) const { return vertex < mesh_.pointed.size() && mesh_.pointed[vertex]; }
 
     void open_doubtful() {
         while (!doubtful_.empty()) {

@@ -91,7 +91,7 @@ struct APatchResult {
 /// Ties: of equally long edges the one with the lower vertices is bisected first; of equally acute edges it becomes
 /// sharp. Bytes depend neither on the number of threads nor on the processor.
 /// Cost: linear. One thread: 15 to 35 us and 4 kB per triangle; with points 5 us per point to locate and measure them,
-/// and a fit's 3 us per point and 120 us and 6 kB per triangle, with noise and few points per triangle 500 us. Where
+/// and a fit's 3 us per point and 120 us and 6 kB per triangle, with noise and few points per triangle 540 us. Where
 /// vertices get tips, tessellations to find intersections add up to 1 ms per triangle. Metrics and warnings: see
 /// plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);

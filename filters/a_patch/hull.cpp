@@ -162,14 +162,12 @@ private:
         if (edge.slopes[1] == Vec3::Zero()) edge.slopes[1] = second / 3;
     }
 
-    bool is_regular(u32 vertex) const { return vertex >= mesh_.pointed.size() || !mesh_.pointed[vertex]; }
-
     void describe_sharp(HullEdge& edge, const std::array<Vec3, 2>& of_first, u32 other) {
         const std::array<Vec3, 2> of_second{hull_.normals[other / 3][(other + 1) % 3],
                                             hull_.normals[other / 3][other % 3]};
         const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
         edge.slopes[1] = default_slope(d, of_second[0], of_second[1]);
-        edge.is_straight = (!is_regular(edge.a) && !is_regular(edge.b)) ||
+        edge.is_straight = (mesh_.is_pointed(edge.a) && mesh_.is_pointed(edge.b)) ||
                            std::ranges::all_of(
                                std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
                                [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });

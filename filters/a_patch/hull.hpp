@@ -84,6 +84,8 @@ struct PatchMesh {
     CornerNormals normals;
     /// By vertex, of those beyond its end false: whether the gradient is 0 there, so that the surface has a tip.
     std::vector<bool> pointed{};
+
+    bool is_pointed(u32 vertex) const { return vertex < pointed.size() && pointed[vertex]; }
 };
 
 struct Hull {

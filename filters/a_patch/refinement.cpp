@@ -34,10 +34,8 @@ LongEdge longest_edge(const TriangleMesh& mesh, u32 triangle) {
     return longest;
 }
 
-enum class Middle { of_curve, of_segment };  ///< where the new vertex is
-
 /// Bisects those of the edges, longest first, whose triangles are not cut yet. Returns how many.
-std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle middle_is) {
+std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle position) {
     TriangleMesh& mesh = patch_mesh.mesh;
     CornerNormals& normals = patch_mesh.normals;
     const Array<u32> opposites = half_edges::opposites(mesh);
@@ -90,7 +88,7 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle mi
             new_normals[side] = (sum - tangent * (tangent.dot(sum) / tangent.squaredNorm())).normalized();
         }
         positions.push_back((positions[a] + positions[b]) / 2 + (at_b - at_a) / 8);
-        if (middle_is == Middle::of_segment || !is_sound(half, new_normals[0]) ||
+        if (position == Middle::of_segment || !is_sound(half, new_normals[0]) ||
             (!is_border && !is_sound(other, new_normals[1]))) {
             positions.back() = (positions[a] + positions[b]) / 2;
             const Vec3 first = face_normal(half / 3), second = is_border ? Vec3(Vec3::Zero()) : face_normal(other / 3);
@@ -130,9 +128,7 @@ std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles) {
     return bisect(mesh, std::move(edges), Middle::of_curve);
 }
 
-namespace {
-
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle_is) {
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle) {
     std::vector<Edge> sought(edges.begin(), edges.end());
     std::ranges::sort(sought);
     std::vector<LongEdge> found;
@@ -141,17 +137,7 @@ std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle mi
         if (a < b && std::ranges::binary_search(sought, make_edge(a, b)))
             found.push_back({(mesh.mesh.positions[b] - mesh.mesh.positions[a]).squaredNorm(), make_edge(a, b), half});
     }
-    return bisect(mesh, std::move(found), middle_is);
-}
-
-}  // namespace
-
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
-    return bisect_edges(mesh, edges, Middle::of_curve);
-}
-
-std::size_t bisect_straight(PatchMesh& mesh, std::span<const Edge> edges) {
-    return bisect_edges(mesh, edges, Middle::of_segment);
+    return bisect(mesh, std::move(found), middle);
 }
 
 }  // namespace scanmill::a_patches

@@ -14,10 +14,13 @@ namespace scanmill::a_patches {
 /// how many edges were bisected: at least one, if there are triangles. Pre: an oriented manifold.
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 
-/// The same for edges.
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges);
+/// Where the vertex that bisects an edge is.
+enum class Middle {
+    of_curve,   ///< of the cubic that bisect() describes
+    of_segment  ///< between the ends, with the normals of the triangles
+};
 
-/// The same, at the middles of the segments, with the normals of the triangles there.
-std::size_t bisect_straight(PatchMesh& mesh, std::span<const Edge> edges);
+/// The same for edges.
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle);
 
 }  // namespace scanmill::a_patches

@@ -184,13 +184,30 @@ TEST(APatchSharp, OfEquallyLongEdges_TheOneWithTheLowerVerticesIsBisected) {
     }
 }
 
-/// The exact sphere with these edges sharp. Its patches join as smoothly as before: the normals of both sides are
-/// equal.
-TriangleMesh sphere_with_sharp(std::vector<Edge> edges) {
-    TriangleMesh mesh = exact_sphere(2);
-    std::ranges::sort(edges);
-    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
-    return mesh;
+TEST(APatchSharp, TwoSharpEdgesThatMeetAtARightAngle_AreCreasesInThePlaneOfTheirFace) {
+    // A cube whose top and bottom are sharp, and whose sides form one smooth wall: two sharp edges at each corner.
+    TriangleMesh mesh = sharp_cube();
+    const auto is_level = [&](const Edge& e) { return mesh.positions[e[0]].z() == mesh.positions[e[1]].z(); };
+    Array<Edge> level;
+    std::ranges::copy_if(mesh.sharp_edges, std::back_inserter(level), is_level);
+    ASSERT_EQ(level.size(), 8u);
+    mesh.sharp_edges = std::move(level);
+    mesh.face_columns = {};
+    const PatchRun run = patched(mesh);
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_EQ(run.result.repairs.smoothed, 0u);
+    EXPECT_GE(run.result.mesh.sharp_edges.size(), 8u);
+    Execution execution;
+    const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, execution);
+    EXPECT_TRUE(topology(fine).closed);
+    EXPECT_EQ(topology(fine).euler, 2);
+    ASSERT_GT(fine.sharp_edges.size(), 8u);
+    for (const Edge& edge : fine.sharp_edges)
+        for (const u32 v : edge) {
+            const double z = fine.positions[v].z();
+            EXPECT_LT(std::min(std::abs(z), std::abs(z - 1)), 1e-12);
+        }
 }
 
 /// How far the middles of the mesh's triangles are from the sphere, at most.
@@ -202,38 +219,31 @@ double mesh_distance(const TriangleMesh& mesh) {
     return farthest;
 }
 
-TEST(APatchSharp, TwoSharpEdgesThatMeetAtAnAngle_HaveASurface) {
-    const Triangle t = exact_sphere(2).triangles[0];
-    const TriangleMesh mesh = sphere_with_sharp({make_edge(t[0], t[1]), make_edge(t[0], t[2])});
-    const PatchRun run = patched(mesh);
-    EXPECT_EQ(run.result.inverted, 0u);
-    EXPECT_EQ(run.result.sign_violations, 0u);
-    EXPECT_EQ(run.result.repairs.pointed, 0u);
-    Execution execution;
-    const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, execution);
-    EXPECT_TRUE(topology(fine).closed);
-    for (const Vec3& p : fine.positions) EXPECT_LT(std::abs(sphere_distance(p)), mesh_distance(mesh));
-}
-
-TEST(APatchSharp, SharpEdgesThatFormNoChain_HaveASurfaceAlsoFitted) {
-    // Single edges, forks and ends, here and there.
-    const TriangleMesh sphere = exact_sphere(2);
+TEST(APatchSharp, SharpEdgesOfASmoothSurface_BecomeSmoothWhereNoCreaseFollowsThem) {
+    // Single edges, forks and ends on a sphere, where both sides have one normal.
+    TriangleMesh mesh = exact_sphere(2);
     Random random(3);
     std::vector<Edge> edges;
-    for (const Triangle& t : sphere.triangles)
+    for (const Triangle& t : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i)
             if (t[i] < t[(i + 1) % 3] && random.uniform() < 0.15) edges.push_back(make_edge(t[i], t[(i + 1) % 3]));
     ASSERT_GT(edges.size(), 10u);
-    const TriangleMesh mesh = sphere_with_sharp(edges);
+    std::ranges::sort(edges);
+    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
     const PointCloud points = random_sphere(5000, 5);
     for (const PointCloud* cloud : {static_cast<const PointCloud*>(nullptr), &points}) {
         const PatchRun run = patched(mesh, {}, cloud);
         EXPECT_EQ(run.result.inverted, 0u);
         EXPECT_EQ(run.result.sign_violations, 0u);
+        EXPECT_EQ(run.result.repairs.pointed, 0u);
+        EXPECT_GT(run.result.repairs.smoothed, 0u);
+        EXPECT_EQ(run.result.repairs.smoothed + run.result.mesh.sharp_edges.size(), edges.size());
+        EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("blunt sharp edges become smooth")));
         Execution execution;
         const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, execution);
         EXPECT_TRUE(topology(fine).closed);
         EXPECT_EQ(topology(fine).euler, 2);
+        // Normals are turned along the edges before these become smooth, so most of the accuracy is lost.
         for (const Vec3& p : fine.positions) EXPECT_LT(std::abs(sphere_distance(p)), mesh_distance(mesh));
     }
 }
@@ -274,7 +284,7 @@ TEST(APatchSharp, AnEdgeBisectedStraight_HasTheNormalsOfItsTrianglesInTheMiddle)
                                 Eigen::Map<const Vec3>(given.data() + 9 * f + 3),
                                 Eigen::Map<const Vec3>(given.data() + 9 * f + 6)});
     const Edge edge = rim.sharp_edges[0];
-    EXPECT_EQ(a_patches::bisect_straight(mesh, std::vector<Edge>{edge}), 1u);
+    EXPECT_EQ(a_patches::bisect_edges(mesh, std::vector<Edge>{edge}, a_patches::Middle::of_segment), 1u);
     const auto middle = static_cast<u32>(rim.positions.size());
     ASSERT_EQ(mesh.mesh.positions.size(), middle + 1u);
     const Vec3 &a = rim.positions[edge[0]], &b = rim.positions[edge[1]];
