@@ -5,8 +5,8 @@
 #   scanmill-<name>-algorithm   a static library of every .cpp except plugin.cpp: the plain functions, for tests and programs
 #   scanmill-<name>.so          the module, from plugin.cpp
 #   scanmill-<name>.json        the manifest, written by the built module
-# The configuration fails if the filter has no README.md or no test file tests/filters/<folder>*_test.cpp. Set
-# SCANMILL_FILTER_TESTS if the tests are in another folder. NO_INSTALL is for modules that only tests use.
+# The configuration fails if the filter has no README.md or no test file: tests/filters/<folder>*_test.cpp or
+# tests/filters/<folder>/*_test.cpp. Set SCANMILL_FILTER_TESTS if the tests are in another folder. NO_INSTALL is for modules that only tests use.
 function(scanmill_add_filter folder)
   cmake_parse_arguments(FILTER "NO_INSTALL" "" "LINK;DEFINE" ${ARGN})
   if(FILTER_UNPARSED_ARGUMENTS)
@@ -21,22 +21,22 @@ function(scanmill_add_filter folder)
   if(NOT SCANMILL_FILTER_TESTS)
     set(SCANMILL_FILTER_TESTS ${PROJECT_SOURCE_DIR}/tests/filters)
   endif()
-  file(GLOB tests CONFIGURE_DEPENDS ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp
+       ${SCANMILL_FILTER_TESTS}/${folder}/*_test.cpp)
   if(NOT tests)
-    message(FATAL_ERROR "filter ${name}: no ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp; every filter needs tests")
+    message(FATAL_ERROR "filter ${name}: no ${SCANMILL_FILTER_TESTS}/${folder}_test.cpp; every filter needs tests")
   endif()
 
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cpp)
   list(REMOVE_ITEM sources ${source}/plugin.cpp)
   add_library(scanmill-${name}-algorithm STATIC ${sources})
-  set_property(GLOBAL APPEND PROPERTY SCANMILL_FILTER_ALGORITHMS scanmill-${name}-algorithm)
   set_target_properties(scanmill-${name}-algorithm PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                                               POSITION_INDEPENDENT_CODE ON)
   target_include_directories(scanmill-${name}-algorithm PUBLIC ${source}/..)
   target_compile_definitions(scanmill-${name}-algorithm PRIVATE ${FILTER_DEFINE})
   # No fused multiply-add, so that results have the same bytes on every processor.
   target_compile_options(scanmill-${name}-algorithm PUBLIC -ffp-contract=off)
-  target_link_libraries(scanmill-${name}-algorithm PUBLIC Scanmill::core PRIVATE ${FILTER_LINK})
+  target_link_libraries(scanmill-${name}-algorithm PUBLIC Scanmill::core Scanmill::geometry PRIVATE ${FILTER_LINK})
   if(TARGET scanmill-warnings)
     target_link_libraries(scanmill-${name}-algorithm PRIVATE $<BUILD_INTERFACE:scanmill-warnings>)
   endif()

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Compiler flags of every target. Tuning flags are in the presets. The flags here affect correctness: no fused
 # multiply-add (same bytes on every processor), and sanitizers in all targets or in none.
+#
+# Object files contain no path of the machine: the compiler cache serves every checkout, and equal sources give equal
+# files. Tests find their folders at run time.
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()
+add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 
 add_compile_options(-ffp-contract=off)
 if(SCANMILL_SANITIZE)

@@ -13,7 +13,7 @@
 
 #include "a_patch/a_patch.hpp"
 #include "scanmill/base/random.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 #include "support/shapes.hpp"
 #include "tessellate/tessellate.hpp"
 

@@ -27,7 +27,7 @@
 #include "delaunay/delaunay.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 #include "support/point_sets.hpp"
 
 namespace {

@@ -15,10 +15,10 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "a_patch/weights.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill::a_patches {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::a_patches {

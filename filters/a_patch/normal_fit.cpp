@@ -12,7 +12,7 @@
 #include "a_patch/repair.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 
 namespace scanmill::a_patches {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 
 namespace scanmill::a_patches {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "a_patch/normals.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 
 namespace scanmill::a_patches {
 

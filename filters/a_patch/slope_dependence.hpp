@@ -7,7 +7,7 @@
 
 #include "a_patch/hull.hpp"
 #include "scanmill/data/patches.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill::a_patches {
 

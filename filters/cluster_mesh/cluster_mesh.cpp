@@ -24,7 +24,7 @@
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "decimate/decimate.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 
 namespace scanmill::decimating {
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <iterator>
 
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 
 namespace scanmill {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

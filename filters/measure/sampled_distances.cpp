@@ -9,7 +9,7 @@
 #include "measure/distance_numbers.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
 
 namespace scanmill::measuring {

@@ -14,7 +14,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
-#include "scanmill/geometry/spatial/point_tree.hpp"
+#include "scanmill/data/point_tree.hpp"
 
 namespace scanmill {
 

@@ -15,7 +15,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
-#include "scanmill/geometry/spatial/point_tree.hpp"
+#include "scanmill/data/point_tree.hpp"
 
 namespace scanmill {
 

@@ -13,7 +13,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/direction.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
-#include "scanmill/geometry/spatial/spacing.hpp"
+#include "scanmill/data/spacing.hpp"
 
 namespace scanmill {
 

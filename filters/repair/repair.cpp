@@ -18,8 +18,8 @@
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

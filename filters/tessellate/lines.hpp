@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill::tessellation {
 

@@ -5,7 +5,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill::tessellation {
 

@@ -15,7 +15,7 @@
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/rounding.hpp"
 #include "scanmill/formats/common/writing.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/io/output_buffer.hpp"
 #include "threemf/plain_zip.hpp"
 #include "threemf/threemf.hpp"

@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -19,7 +20,7 @@ class Generate : public testing::Test {
 protected:
     Generate() {
         fs::create_directories(folder_ / "tools");
-        fs::copy_file(fs::path(SCANMILL_SOURCE_DIR) / "tools/generate.sh", folder_ / "tools/generate.sh");
+        fs::copy_file(fs::path(test::source_folder()) / "tools/generate.sh", folder_ / "tools/generate.sh");
         folder_.write("filters/CMakeLists.txt", "scanmill_add_filter(one LINK x)\nscanmill_add_filter(two_words)\n");
         for (const char* page : {"one.md", "two-words.md", "gone.md"})
             folder_.write(std::string("docs/filters/") + page, "old\n");

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "support/folders.hpp"
 #include "support/guide.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path source = SCANMILL_SOURCE_DIR;
+const fs::path source = test::source_folder();
 
 TEST(Guide, Matching_TakesGapsInLinesAndBetweenThem) {
     EXPECT_TRUE(matches({"a", "…", "z"}, {"a", "b", "c", "z"}));
@@ -39,7 +40,7 @@ TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
     const TemporaryFolder folder;
     const fs::path prefix = folder / "home/scanmill";
     const std::string install =
-        "cmake --install '" SCANMILL_BUILD_DIR "' --prefix '" + prefix.string() + "' >/dev/null";
+        "cmake --install '" + test::build_folder() + "' --prefix '" + prefix.string() + "' >/dev/null";
     ASSERT_EQ(std::system(install.c_str()), 0);
     const Guide guide = read_guide(source / "docs/plugin-guide/README.md");
     ASSERT_GE(guide.commands.size(), 8u);

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -25,7 +26,7 @@ Names matches_in(const std::string& text, const std::string& pattern) {
 }
 
 TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
-    const std::filesystem::path source = SCANMILL_SOURCE_DIR;
+    const std::filesystem::path source = test::source_folder();
     Names scaled;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "filters"))
         if (entry.path().extension() == ".cpp")

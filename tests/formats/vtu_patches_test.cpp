@@ -4,7 +4,7 @@
 #include <vtkCell.h>
 
 #include "formats/vtk_support.hpp"
-#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill::test {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "fuzz/seeds.hpp"
 #include "fuzz/targets.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path corpus = fs::path(SCANMILL_SOURCE_DIR) / "tests/fuzz/corpus";
+const fs::path corpus = fs::path(test::source_folder()) / "tests/fuzz/corpus";
 
 class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {};
 

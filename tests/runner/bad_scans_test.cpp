@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -108,7 +109,7 @@ TEST_P(BadScanTest, Quickstart_SaysOneClearSentenceAndEndsWith1) {
     const BadScan& bad = GetParam();
     const TemporaryFolder folder;
     folder.write(bad.file, bad.content);
-    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    const std::string quickstart = test::source_folder() + "/workflows/quickstart.yaml";
     const ProgramResult ran =
         scanmill_program({"run", quickstart, bad.file, "-o", "out"}, {.folder = folder.path(), .environment = {}});
     expect_one_clear_sentence(ran, bad.file, bad.parts);
@@ -127,7 +128,7 @@ TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
     for (const BadScan& bad : scans) {
         const TemporaryFolder folder;
         folder.write(bad.file, bad.content);
-        const std::string workflow = std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml";
+        const std::string workflow = test::source_folder() + "/workflows/raw-scans.yaml";
         const ProgramResult ran =
             scanmill_program({"run", workflow, bad.file, "-o", "out"}, {.folder = folder.path(), .environment = {}});
         expect_one_clear_sentence(ran, "raw-scans", bad.parts);
@@ -138,7 +139,7 @@ TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
 ProgramResult raw_scans_of(const std::string& content, const TemporaryFolder& folder,
                            const std::vector<std::string>& options = {}) {
     folder.write("view.xyz", content);
-    std::vector<std::string> arguments{"run", std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml",
+    std::vector<std::string> arguments{"run", test::source_folder() + "/workflows/raw-scans.yaml",
                                        "view.xyz", "-o", "out"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return scanmill_program(arguments, {.folder = folder.path(), .environment = {}});
@@ -186,7 +187,7 @@ TEST(BadScan, RawScans_OfOutliersAlone_AreDoubtful) {
     for (int i = 0; i < 60; ++i) far_apart += fmt::format("{} {} {}\n", i * i * i % 977, i * i % 983, i * 31 % 991);
     const TemporaryFolder folder;
     folder.write("outliers.xyz", far_apart);
-    const std::string workflow = std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml";
+    const std::string workflow = test::source_folder() + "/workflows/raw-scans.yaml";
     const ProgramResult ran =
         scanmill_program({"run", workflow, "outliers.xyz", "-o", "out"}, {.folder = folder.path(), .environment = {}});
     EXPECT_THAT(ran.err, HasSubstr("they form no surface at that size"));
@@ -196,14 +197,14 @@ TEST(BadScan, RawScans_OfOutliersAlone_AreDoubtful) {
 TEST(BadScan, Folder_IsRefused) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "scan.ply");
-    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    const std::string quickstart = test::source_folder() + "/workflows/quickstart.yaml";
     expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}),
                               "scan.ply", {"folder"});
 }
 
 TEST(BadScan, MissingFile_IsRefused) {
     const TemporaryFolder folder;
-    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    const std::string quickstart = test::source_folder() + "/workflows/quickstart.yaml";
     expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}),
                               "scan.ply", {"no such file"});
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -40,7 +41,7 @@ protected:
     }
     ProgramOptions options() const {
         return {.folder = folder_.path(),
-                .environment = {"SCANMILL_PLUGIN_PATH=" SCANMILL_TEST_PLUGIN_DIR,
+                .environment = {"SCANMILL_PLUGIN_PATH=" + test::test_plugin_folder(),
                                 // The signals are what is tested here, not what a sanitizer makes of them.
                                 "ASAN_OPTIONS=handle_segv=0:handle_abort=0:allocator_may_return_null=0"},
                 .cache = folder_ / "home"};

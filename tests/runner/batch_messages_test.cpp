@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "runner/batch_fixture.hpp"
+#include "support/folders.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -19,8 +20,7 @@ TEST_F(Batch, NobodyListening_IsNoReasonToStop) {
     for (const char* where : {">/dev/full", ">&-", "2>/dev/full", "2>&-", "--json >/dev/full", "--json | head -1"}) {
         std::filesystem::remove_all(folder_ / "out");
         const std::string command = "cd '" + folder_.path().string() +
-                                    "' && (SCANMILL_PLUGIN_PATH='" SCANMILL_TEST_PLUGIN_DIR
-                                    "' XDG_CACHE_HOME=home '" SCANMILL_PROGRAM "' batch b.yaml -o out --no-cache " +
+                                    "' && (SCANMILL_PLUGIN_PATH='" + test::test_plugin_folder() + "' XDG_CACHE_HOME=home '" + test::program_file() + "' batch b.yaml -o out --no-cache " +
                                     where + ") > /dev/null 2>&1";
         const int status = std::system(command.c_str());
         EXPECT_TRUE(WIFEXITED(status)) << where;

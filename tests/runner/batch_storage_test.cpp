@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "runner/faults_fixture.hpp"
+#include "support/folders.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -144,7 +145,7 @@ TEST_F(Storage, RecordsOnAReadOnlyDisk_AreRead_AlsoOfAnOlderVersion) {
         if (old) {
             std::filesystem::remove(folder_ / "out/scanmill.sqlite");
             SQLite::Database((folder_ / "out/scanmill.sqlite").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
-                .exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_3.sql"));
+                .exec(content_of(test::source_folder() + "/tests/data/records_of_version_3.sql"));
         }
         std::filesystem::permissions(folder_.path(), perms::all);
         std::filesystem::permissions(folder_ / "out/scanmill.sqlite",

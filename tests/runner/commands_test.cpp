@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/formats/files.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -23,7 +24,7 @@ const std::vector<std::string> filters{"alpha-solid", "crop",         "delaunay"
                                        "features",    "merge",        "outlier-removal", "region-grow",
                                        "sculpt",      "virtual-scan", "voxel-thin"};
 
-std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
+std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
 
 TEST(Command, Help_GoesToStdoutAndIsNoError) {
     const ProgramResult help = scanmill_program({"--help"});
@@ -85,7 +86,7 @@ TEST(Command, List_NamesEveryFilterInTextAndJson) {
 TEST(Command, List_LoadsNoModule) {
     // A manifest whose module could never be loaded is listed all the same.
     const TemporaryFolder folder;
-    std::string manifest = content_of(std::string(SCANMILL_PLUGIN_DIR) + "/scanmill-voxel-thin.json");
+    std::string manifest = content_of(test::plugin_folder() + "/scanmill-voxel-thin.json");
     const std::string name = "\"name\": \"voxel-thin\"";
     manifest.replace(manifest.find(name), name.size(), "\"name\": \"other-thin\"");
     folder.write("scanmill-other-thin.json", manifest);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "scanmill/formats/files.hpp"
+#include "support/folders.hpp"
 #include "support/gzip.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
@@ -43,7 +44,7 @@ protected:
 
 TEST_F(FilesCommand, ASphereAtSurveyCoordinates_IsWrittenClosed_WithItsShiftBesideIt) {
     folder_.write("far.xyz", sphere(Vec3(500000, 4500000, 300)));
-    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    const std::string quickstart = test::source_folder() + "/workflows/quickstart.yaml";
     const ProgramResult ran = scanmill({"run", quickstart, "far.xyz", "-o", "out", "--no-cache"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_THAT(ran.err, HasSubstr("relative to 500000 4500000 0:"));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -70,7 +71,7 @@ std::string completed(const TemporaryFolder& folder, const std::string& words, i
     folder.write("complete", scanmill_program({"completion", "bash"}).out + "COMP_WORDS=(scanmill " + words +
                                  ")\nCOMP_CWORD=" + std::to_string(index) +
                                  "\n_scanmill\nprintf '%s ' \"${COMPREPLY[@]}\" | sed 's/ $//'; echo\n");
-    const std::string programs = std::filesystem::path(SCANMILL_PROGRAM).parent_path().string();
+    const std::string programs = std::filesystem::path(test::program_file()).parent_path().string();
     const std::string command = "PATH=\"" + programs + ":$PATH\" bash '" + (folder / "complete").string() + "' > '" +
                                 (folder / "proposals").string() + "'";
     EXPECT_EQ(std::system(command.c_str()), 0);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -16,7 +17,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
+std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
 
 TEST(Json, BadRequests_AreAnErrorObjectAndASentence) {
     for (const std::vector<std::string>& arguments :

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/formats/files.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
@@ -19,7 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string merge_views() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/merge-views.yaml"; }
+std::string merge_views() { return test::source_folder() + "/workflows/merge-views.yaml"; }
 
 /// Two views, and poses in the other order: a quarter turn about z for `left`, against its quaternion.
 class MergeCommand : public testing::Test {

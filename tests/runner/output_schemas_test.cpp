@@ -2,6 +2,7 @@
 // What the commands print with --json is what their schemas say. Every other test of this program that runs a command
 // with --json checks this too (tests/support/program.hpp).
 
+#include "support/folders.hpp"
 #include "support/output_schemas.hpp"
 
 #include <filesystem>
@@ -161,7 +162,7 @@ TEST_F(OutputSchemas, Command_PrintsAndWritesThem) {
         const std::string file = "output/" + name + ".schema.json";
         const std::string text = scanmill({"schema", name}).out;
         EXPECT_EQ(content_of(folder_ / "schemas" / file), text);
-        EXPECT_EQ(content_of(std::string(SCANMILL_SOURCE_DIR "/schemas/") + file), text) << "run: make generate";
+        EXPECT_EQ(content_of(test::source_folder() + "/schemas/" + file), text) << "run: make generate";
         EXPECT_EQ(json::parse(text)["$schema"], "http://json-schema.org/draft-07/schema#");
     }
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / "schemas/documents/patches.schema.json"));

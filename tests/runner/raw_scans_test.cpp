@@ -10,6 +10,7 @@
 
 #include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
+#include "support/folders.hpp"
 #include "support/known_models.hpp"
 #include "support/program.hpp"
 #include "support/real_data.hpp"
@@ -23,7 +24,7 @@ using testing::Contains;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-std::string shipped(const std::string& name) { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/" + name; }
+std::string shipped(const std::string& name) { return test::source_folder() + "/workflows/" + name; }
 
 class RawScans : public testing::Test {
 protected:

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
@@ -27,10 +28,10 @@ void write_sphere(const TemporaryFolder& folder, const std::string& name) {
     ASSERT_EQ(made.exit_code, 0) << made.err;
 }
 
-std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
+std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
 
 TEST(RunCommand, ShippedWorkflowsAndBatches_PassCheck) {
-    for (const auto& file : std::filesystem::directory_iterator(std::string(SCANMILL_SOURCE_DIR) + "/workflows")) {
+    for (const auto& file : std::filesystem::directory_iterator(test::source_folder() + "/workflows")) {
         if (file.path().extension() != ".yaml" || file.path().filename() == "nightly.yaml") continue;  // wants its data
         EXPECT_EQ(scanmill_program({"check", file.path().string()}).exit_code, 0) << file.path();
     }
@@ -38,7 +39,7 @@ TEST(RunCommand, ShippedWorkflowsAndBatches_PassCheck) {
 
 TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
     const TemporaryFolder folder;
-    for (const auto& file : std::filesystem::directory_iterator(std::string(SCANMILL_SOURCE_DIR) + "/workflows")) {
+    for (const auto& file : std::filesystem::directory_iterator(test::source_folder() + "/workflows")) {
         std::filesystem::create_directories(folder / "workflows");
         std::filesystem::copy_file(file.path(), folder / "workflows" / file.path().filename());
     }
@@ -73,7 +74,7 @@ TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     const ProgramResult ran =
-        scanmill_program({"run", std::string(SCANMILL_SOURCE_DIR) + "/workflows/bernardini-1997.yaml", "ball.ply", "-o",
+        scanmill_program({"run", test::source_folder() + "/workflows/bernardini-1997.yaml", "ball.ply", "-o",
                           "out", "--json"},
                          {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string shipped(const std::string& name) { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/" + name; }
+std::string shipped(const std::string& name) { return test::source_folder() + "/workflows/" + name; }
 
 json content(const fs::path& file) { return json::parse(std::ifstream(file)); }
 

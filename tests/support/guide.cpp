@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/folders.hpp"
 #include "support/guide.hpp"
 
 #include <gtest/gtest.h>
@@ -117,7 +118,7 @@ void follow(const Guide& guide, const std::filesystem::path& folder, const std::
     // One shell for all, so that `export` lasts; what a command prints goes to a file of its own.
     const TemporaryFolder outputs;
     std::string script = "cd '" + folder.string() + "'\nexport HOME='" + home.string() + "'\nexport PATH='" +
-                         std::filesystem::path(SCANMILL_PROGRAM).parent_path().string() +
+                         std::filesystem::path(program_file()).parent_path().string() +
                          "':$PATH\nunset SCANMILL_PLUGIN_PATH XDG_CACHE_HOME\n";
     for (std::size_t i = 0; i < guide.commands.size(); ++i)
         script += "{ " + guide.commands[i].text + "\n} >'" + (outputs / std::to_string(i)).string() + "' 2>&1\n";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/folders.hpp"
 #include "support/output_schemas.hpp"
 
 #include <algorithm>
@@ -23,8 +24,8 @@ const valijson::Schema& schema_named(const std::string& name) {
     static std::map<std::string, valijson::Schema> schemas;
     const auto [found, is_new] = schemas.try_emplace(name);
     if (is_new) {
-        std::string file = SCANMILL_SOURCE_DIR "/schemas/output/" + name + ".schema.json";
-        if (!std::filesystem::exists(file)) file = SCANMILL_SOURCE_DIR "/schemas/documents/" + name + ".schema.json";
+        std::string file = source_folder() + "/schemas/output/" + name + ".schema.json";
+        if (!std::filesystem::exists(file)) file = source_folder() + "/schemas/documents/" + name + ".schema.json";
         const json document = json::parse(content_of(file));
         valijson::SchemaParser(valijson::SchemaParser::kDraft7)
             .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), found->second);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/folders.hpp"
 #include "support/program.hpp"
 
 #include <fcntl.h>
@@ -43,10 +44,10 @@ namespace {
         const std::size_t equals = variable.find('=');
         ::setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);
     }
-    std::vector<char*> texts{const_cast<char*>(SCANMILL_PROGRAM)};
+    std::vector<char*> texts{const_cast<char*>(program_file().c_str())};
     for (const std::string& argument : arguments) texts.push_back(const_cast<char*>(argument.c_str()));
     texts.push_back(nullptr);
-    ::execv(SCANMILL_PROGRAM, texts.data());
+    ::execv(program_file().c_str(), texts.data());
     ::_exit(127);
 }
 

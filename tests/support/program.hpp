@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -26,7 +27,7 @@ struct ProgramOptions {
     bool own_group = false;                       ///< in a process group of its own, for signal_group()
 };
 
-/// SCANMILL_PROGRAM with these arguments and no standard input, while it runs.
+/// The program with these arguments and no standard input, while it runs.
 class RunningProgram {
 public:
     explicit RunningProgram(const std::vector<std::string>& arguments, const ProgramOptions& options = {});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/real_data.hpp"
 
+#include "support/folders.hpp"
+
 namespace scanmill::test {
 
 namespace {
@@ -8,16 +10,15 @@ std::optional<std::filesystem::path> in_collection(const std::filesystem::path& 
     if (std::filesystem::exists(collection)) return collection / file;
     return std::nullopt;
 }
-const std::filesystem::path source_folder = SCANMILL_SOURCE_DIR;
 }  // namespace
 
 std::optional<std::filesystem::path> fetched_data(std::string_view name) {
     const std::size_t slash = name.find('/');
-    return in_collection(source_folder / "build/data" / name.substr(0, slash), name.substr(slash + 1));
+    return in_collection(std::filesystem::path(source_folder()) / "build/data" / name.substr(0, slash), name.substr(slash + 1));
 }
 
 std::optional<std::filesystem::path> shared_data(std::string_view name) {
-    return in_collection(source_folder.parent_path() / "shared/data", name);
+    return in_collection(std::filesystem::path(source_folder()).parent_path() / "shared/data", name);
 }
 
 }  // namespace scanmill::test

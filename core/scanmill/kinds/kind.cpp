@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {

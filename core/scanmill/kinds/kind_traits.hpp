@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scanmill/geometry/spatial/spacing.hpp"
+#include "scanmill/data/spacing.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {

@@ -5,13 +5,14 @@
 #include <random>
 
 #include "core/formats/support.hpp"
+#include "support/folders.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using testing::HasSubstr;
 
-const fs::path data_folder = fs::path(SCANMILL_SOURCE_DIR) / "tests/data";
+const fs::path data_folder = fs::path(test::source_folder()) / "tests/data";
 
 struct Defect {
     const char* file;

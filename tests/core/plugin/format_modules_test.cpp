@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "scanmill/plugin/module.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -90,7 +91,7 @@ TEST(FormatModules, UnusableOnes_HaveARowWithTheReason) {
 }
 
 TEST(FormatModules, ModuleOfAFilter_IsNotAFormat) {
-    const std::filesystem::path filter = std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "scanmill-test-step.so";
+    const std::filesystem::path filter = std::filesystem::path(test::test_plugin_folder()) / "scanmill-test-step.so";
     EXPECT_THAT(
         sentence_of([&] { load_format_module(filter, "test-step"); }),
         AllOf(HasSubstr("is not a file format"), HasSubstr("'scanmill-filter'"), HasSubstr("'scanmill-format'")));

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "scanmill/plugin/module.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -20,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::filesystem::path plugin_folder = SCANMILL_TEST_PLUGIN_DIR;
+const std::filesystem::path plugin_folder = test::test_plugin_folder();
 
 /// A declaration that is sound and, by its summary, recognisable.
 Manifest manifest_of(const std::string& name, const std::string& summary = "Is there to be found.") {

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "scanmill/plugin/manifest.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -20,7 +21,7 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-const std::filesystem::path plugin_folder = SCANMILL_TEST_PLUGIN_DIR;
+const std::filesystem::path plugin_folder = test::test_plugin_folder();
 
 std::filesystem::path good_module() { return plugin_folder / "scanmill-test-step.so"; }
 
@@ -147,7 +148,7 @@ TEST(AbiText, NamesWhatMustAgree) {
 TEST(InstalledPluginFolder, LiesBesideTheCoreLibrary) {
     EXPECT_TRUE(std::filesystem::exists(core_library_file()));
     EXPECT_THAT(core_library_file().filename().string(), testing::StartsWith("libscanmill-core.so"));
-    EXPECT_EQ(installed_plugin_folder(), std::filesystem::path(SCANMILL_PLUGIN_DIR));
+    EXPECT_EQ(installed_plugin_folder(), std::filesystem::path(test::plugin_folder()));
     EXPECT_NE(installed_plugin_folder(), plugin_folder) << "no product ever sees the tests' modules";
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scanmill/plugin/library.hpp"
+#include "support/folders.hpp"
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
@@ -24,7 +25,7 @@ protected:
     const PointCloud& points(const Outputs& outputs) { return *outputs.find("points")->get<PointCloud>(); }
     const TriangleMesh& mesh(const Outputs& outputs) { return *outputs.find("mesh")->get<TriangleMesh>(); }
 
-    FilterLibrary library_{{SCANMILL_TEST_PLUGIN_DIR}};
+    FilterLibrary library_{{test::test_plugin_folder()}};
     Inputs inputs_;
     Context context_;
 };

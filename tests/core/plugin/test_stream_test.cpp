@@ -5,6 +5,7 @@
 
 #include "scanmill/formats/files.hpp"
 #include "scanmill/plugin/library.hpp"
+#include "support/folders.hpp"
 #include "support/same_points.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -15,7 +16,7 @@ const PointCloud& points(const Outputs& outputs) { return *outputs.find("points"
 
 TEST(TestStream, GivesTheFirstPointAndTheLast_BothWays) {
     const TemporaryFolder folder;
-    FilterLibrary library({SCANMILL_TEST_PLUGIN_DIR});
+    FilterLibrary library({test::test_plugin_folder()});
     const FilterDeclaration& filter = library.load("test-stream");
     const ParameterSet parameters{
         {{"length", ParameterScalar(Length(0.5))}, {"log", ParameterScalar((folder / "log").string())}}};

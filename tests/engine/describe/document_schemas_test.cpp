@@ -5,6 +5,7 @@
 
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/kind.hpp"
+#include "support/folders.hpp"
 #include "support/output_schemas.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -21,7 +22,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 std::string example_text(const std::string& name) {
-    return content_of(std::string(SCANMILL_SOURCE_DIR "/tests/fuzz/corpus/document/") + name + ".json");
+    return content_of(test::source_folder() + "/tests/fuzz/corpus/document/" + name + ".json");
 }
 
 class DocumentSchemas : public testing::TestWithParam<std::string> {};
@@ -62,7 +63,7 @@ TEST(DocumentSchemaNames, AreTheShippedKindsWithAJsonForm) {
 
 TEST(DocumentSchemaNames, AreTheFilesOfTheTree) {
     for (const std::string& name : document_names())
-        EXPECT_EQ(content_of(std::string(SCANMILL_SOURCE_DIR "/schemas/documents/") + name + ".schema.json"),
+        EXPECT_EQ(content_of(test::source_folder() + "/schemas/documents/" + name + ".schema.json"),
                   document_schema(name))
             << "run: make generate";
 }

@@ -16,6 +16,7 @@
 #include "scanmill/describe/schemas.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "support/declared_filters.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill {
@@ -206,10 +207,10 @@ TEST_F(WorkflowSchema, ParametersAndMetrics_CarryTheirHelpRangeAndDefault) {
 TEST_F(WorkflowSchema, EqualFilters_GiveEqualBytes) { EXPECT_EQ(workflow_schema(library_), schema_.text()); }
 
 TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
-    const FilterLibrary library({SCANMILL_PLUGIN_DIR});
+    const FilterLibrary library({test::plugin_folder()});
     Schema schema(workflow_schema(library)), schema_of_batches(batch_schema(library));
     std::size_t found = 0;
-    for (const auto& file : std::filesystem::directory_iterator(SCANMILL_SOURCE_DIR "/workflows")) {
+    for (const auto& file : std::filesystem::directory_iterator(test::source_folder() + "/workflows")) {
         if (file.path().extension() != ".yaml") continue;
         ++found;
         const std::string workflow = test::content_of(file.path());

@@ -17,6 +17,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/records/recorder.hpp"
 #include "scanmill/worker/file_description.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -205,7 +206,7 @@ class RecordsOfVersion : public Records, public testing::WithParamInterface<int>
 protected:
     RecordsOfVersion() {
         SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(fmt::format(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_{}.sql", GetParam())));
+        old.exec(content_of(fmt::format("{}/tests/data/records_of_version_{}.sql", test::source_folder(), GetParam())));
     }
 };
 
@@ -246,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(Every, RecordsOfVersion, testing::Values(1, 2, 3, 4));
 TEST_F(Records, TablesOfVersion3_KeepTheirCountsAndTheKilledRun) {
     {
         SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_3.sql"));
+        old.exec(content_of(test::source_folder() + "/tests/data/records_of_version_3.sql"));
     }
     const std::vector<RunSummary> runs = RunRecords::read(file()).runs();
     ASSERT_EQ(runs.size(), 3u);
@@ -263,7 +264,7 @@ TEST_F(Records, TablesOfVersion3_KeepTheirCountsAndTheKilledRun) {
 TEST_F(Records, TablesOfTheFirstVersion_AreBroughtUpToDate) {
     {
         SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_1.sql"));
+        old.exec(content_of(test::source_folder() + "/tests/data/records_of_version_1.sql"));
     }
     for (const char* how : {"the first time", "once it is up to date"}) {
         SCOPED_TRACE(how);

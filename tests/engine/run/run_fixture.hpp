@@ -8,6 +8,7 @@
 
 #include "scanmill/run/run.hpp"
 #include "scanmill/worker/workers.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -56,7 +57,7 @@ protected:
     }
 
     TemporaryFolder folder_;
-    FilterLibrary library_{{SCANMILL_TEST_PLUGIN_DIR}};
+    FilterLibrary library_{{test::test_plugin_folder()}};
     Plan plan_;
     RunRequest request_;
     RunSettings settings_;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "engine/run/run_fixture.hpp"
+#include "support/folders.hpp"
 #include "support/point_files.hpp"
 
 namespace scanmill::test {
@@ -12,7 +13,7 @@ namespace scanmill::test {
 class StreamedRun : public Run {
 protected:
     StreamedRun() {
-        library_ = FilterLibrary({SCANMILL_TEST_PLUGIN_DIR, SCANMILL_PLUGIN_DIR});
+        library_ = FilterLibrary({test::test_plugin_folder(), test::plugin_folder()});
         use_cache("cache");
         keep_ = KeepRule::Policy::always;
     }

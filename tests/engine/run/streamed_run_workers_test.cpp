@@ -7,6 +7,7 @@
 
 #include "engine/run/streamed_run_fixture.hpp"
 #include "scanmill/worker/worker_processes.hpp"
+#include "support/folders.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -41,11 +42,11 @@ private:
 };
 
 TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
-    ::setenv("SCANMILL_PLUGIN_PATH", SCANMILL_TEST_PLUGIN_DIR, 1);
+    ::setenv("SCANMILL_PLUGIN_PATH", test::test_plugin_folder().c_str(), 1);
     prepare("  - test-stream: {length: {sweep: [1 %diag, 2 %diag]}, log: " + log() + "}\n", {scan("a.xyz")},
             "outputs: {'{scan}.{variant}.ply': test-stream}\n");
     WorkerProcessSettings command;
-    command.command = {SCANMILL_PROGRAM, "worker"};
+    command.command = {test::program_file(), "worker"};
     command.cache_folder = cache_->folder().string();
     command.keep_policy = static_cast<int>(keep_);
     WorkerProcesses workers(std::move(command));

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/worker/workbench.hpp"
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"

@@ -10,6 +10,7 @@
 #include "engine/run/run_fixture.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/plan/expectation.hpp"
+#include "support/folders.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 
 class WorkerProcessesTest : public Run {
 protected:
-    WorkerProcessesTest() { ::setenv("SCANMILL_PLUGIN_PATH", SCANMILL_TEST_PLUGIN_DIR, 1); }
+    WorkerProcessesTest() { ::setenv("SCANMILL_PLUGIN_PATH", test::test_plugin_folder().c_str(), 1); }
     ~WorkerProcessesTest() override { ::unsetenv("SCANMILL_PLUGIN_PATH"); }
 
     RunReport run_with(const std::vector<std::string>& command) {
@@ -38,7 +39,7 @@ TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
     const std::string file = content_of(folder_ / "out/a.ply");
     ASSERT_TRUE(here.outcome() == Outcome::ok) << here.cells[0].failure.whole().what();
     std::filesystem::remove_all(folder_ / "out");
-    const RunReport there = run_with({SCANMILL_PROGRAM, "worker"});
+    const RunReport there = run_with({test::program_file(), "worker"});
     ASSERT_TRUE(there.outcome() == Outcome::ok) << there.cells[0].failure.whole().what();
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), file);
     for (std::size_t i = 0; i < here.nodes.size(); ++i) {
@@ -79,13 +80,13 @@ TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {
 
 TEST_F(WorkerProcessesTest, ModuleThatEndsItsProcessAtLoad_FailsTheCellAndIsNamed) {
     for (const char* file : {"scanmill-test-step.so", "scanmill-test-step.json"})
-        std::filesystem::copy(std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / file, folder_ / file);
-    std::filesystem::copy(std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "unusable/scanmill-exiting-at-load.so",
+        std::filesystem::copy(std::filesystem::path(test::test_plugin_folder()) / file, folder_ / file);
+    std::filesystem::copy(std::filesystem::path(test::test_plugin_folder()) / "unusable/scanmill-exiting-at-load.so",
                           folder_ / "scanmill-test-step.so", std::filesystem::copy_options::overwrite_existing);
     ::setenv("SCANMILL_PLUGIN_PATH", folder_.path().c_str(), 1);
     library_ = FilterLibrary({folder_.path()});
     prepare("  - test-step:\n", {scan("a.xyz")});
-    const RunReport report = run_with({SCANMILL_PROGRAM, "worker"});
+    const RunReport report = run_with({test::program_file(), "worker"});
     EXPECT_EQ(report.cells[0].failure.cause, Cause::exit);
     EXPECT_EQ(report.cells[0].failure.number, 3);
     const std::string module = (folder_ / "scanmill-test-step.so").string();

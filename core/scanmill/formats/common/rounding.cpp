@@ -5,7 +5,7 @@
 
 #include "scanmill/formats/common/position_merger.hpp"
 #include "scanmill/formats/common/writing.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

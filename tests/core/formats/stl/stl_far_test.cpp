@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes that single precision does not hold: survey coordinates, and triangles that collapse.
 #include "core/formats/support.hpp"
-#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/data/topology.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/topology.hpp"
+#include "scanmill/data/spacing.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr double long_edge = 7;  // median edges
+constexpr double doubtful_spanned = 0.1;
+constexpr double long_edge_of_handle = 4;  // median edges
+constexpr double doubtful_spanned_of_handle = 0.001;
+constexpr double cosine_of_rough = 0.5;  // 60 degrees
+constexpr double doubtful_rough = 0.15;
+constexpr std::size_t few_edges = 10'000;
+constexpr double doubtful_turn = 5;  // degrees
+
+/// Twice the area as its length.
+Vec3 area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
+    const Vec3& a = mesh.positions[triangle[0]];
+    return (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
+}
+
+}  // namespace
+
+double spanned_share(const TriangleMesh& mesh, double edges) {
+    const double limit = edges * edge_spacing(mesh);
+    double spanned = 0, whole = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        const double area = area_normal(mesh, triangle).norm();
+        double longest = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 edge = mesh.positions[triangle[(i + 1) % 3]] - mesh.positions[triangle[i]];
+            longest = std::max(longest, edge.squaredNorm());
+        }
+        whole += area;
+        if (longest > limit * limit) spanned += area;
+    }
+    return whole > 0 ? spanned / whole : 0;
+}
+
+double rough_share(const TriangleMesh& mesh) {
+    const Array<u32> opposite = half_edges::opposites(mesh);
+    std::size_t rough = 0, edges = 0;
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
+        const u32 other = opposite[half_edge];
+        if (other >= opposite.size() || other < half_edge) continue;  // counted once; a boundary has no opposite
+        const Vec3 one = area_normal(mesh, mesh.triangles[half_edge / 3]);
+        const Vec3 two = area_normal(mesh, mesh.triangles[other / 3]);
+        ++edges;
+        rough += one.dot(two) < cosine_of_rough * one.norm() * two.norm();
+    }
+    return edges > 0 ? static_cast<double>(rough) / static_cast<double>(edges) : 0;
+}
+
+std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise) {
+    std::vector<std::string> doubts;
+    if (noise > 0) {
+        // Of an equilateral triangle with edge a, the normal turns by noise / (a / sqrt(2)) about any axis.
+        const double edge = edge_spacing(mesh), degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
+        if (degrees > doubtful_turn)
+            doubts.push_back(fmt::format(
+                "the points have noise of {:.3g} u (standard deviation), which turns triangles with edges of "
+                "{:.3g} u by {:.0f} degrees; the workflow raw-scans removes noise, and so does `smooth` "
+                "before the points are thinned",
+                noise, edge, degrees));
+    }
+    if (const double share = spanned_share(mesh, long_edge); share > doubtful_spanned)
+        doubts.push_back(fmt::format(
+            "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans "
+            "gaps between the points: scan the missing part, or remove outliers first",
+            100 * share, long_edge));
+    else if (const double beside = spanned_share(mesh, long_edge_of_handle); beside > doubtful_spanned_of_handle)
+        if (const long genus = topology(mesh).genus.value_or(0); genus > 0)
+            doubts.push_back(fmt::format(
+                "the surface has genus {} and spans gaps between the points: {:.2g} % of its area is in triangles with "
+                "an edge longer than {} median edges; parts may be joined, or tunnels filled, that the object does "
+                "not have: scan the missing part, or compare the surface with the object",
+                genus, 100 * beside, long_edge_of_handle));
+    if (3 * mesh.triangles.size() / 2 <= few_edges) return doubts;
+    if (const double share = rough_share(mesh); share > doubtful_rough)
+        doubts.push_back(fmt::format(
+            "at {:.0f} % of the surface's edges two triangles meet at more than 60 degrees, because outliers or noise "
+            "as "
+            "large as the spacing crumple it: remove or smooth them first, or thin the scan with larger voxels",
+            100 * share));
+    return doubts;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A triangle mesh that is edited: edges are flipped and split, faces split, vertices removed.
+///
+/// Half-edges are numbered as in half_edges.hpp: half-edge 3 t + i goes from corner i of triangle t to the next one. An
+/// edit that makes as many triangles as it removes, or fewer, uses the rows of the removed ones; rows that are left
+/// over stay empty. So triangles that no edit touched keep their rows, and the mesh is written out in input order.
+///
+/// Positions are not part of it: edits decide topology only, and their callers decide geometry.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scanmill/data/half_edges.hpp"
+
+namespace scanmill {
+
+class EditableMesh {
+public:
+    static constexpr u32 none = ~u32(0);
+
+    /// Pre: every vertex has at most one fan of triangles, open or closed; no triangle has a repeated vertex. Throws
+    /// Error as half_edges::opposites() does, and for such vertices and triangles, naming the first.
+    /// Cost: linear, 24 bytes per triangle and 4 per vertex, and 24 bytes per triangle during construction.
+    explicit EditableMesh(const TriangleMesh& mesh);
+    /// `opposite`: half_edges::opposites(mesh).
+    EditableMesh(const TriangleMesh& mesh, Array<u32> opposite);
+
+    std::size_t vertices() const { return first_.size(); }
+    /// Rows, empty ones included.
+    std::size_t rows() const { return corners_.size() / 3; }
+    std::size_t triangles() const { return triangles_; }
+    bool is_empty(u32 row) const { return corners_[3 * row] == none; }
+    Triangle triangle(u32 row) const { return {corners_[3 * row], corners_[3 * row + 1], corners_[3 * row + 2]}; }
+
+    static u32 after(u32 half_edge) { return half_edges::after(half_edge); }
+    static u32 before(u32 half_edge) { return half_edges::before(half_edge); }
+    u32 start(u32 half_edge) const { return corners_[half_edge]; }
+    u32 end(u32 half_edge) const { return corners_[after(half_edge)]; }
+    /// The corner opposite to the half-edge, in its triangle.
+    u32 apex(u32 half_edge) const { return corners_[before(half_edge)]; }
+    /// half_edges::boundary on the boundary.
+    u32 opposite(u32 half_edge) const { return opposite_[half_edge]; }
+    bool is_boundary(u32 half_edge) const { return opposite_[half_edge] == half_edges::boundary; }
+
+    /// A half-edge from the vertex: on the boundary the first one of its fan, counter-clockwise seen from outside.
+    /// `none` for a vertex without triangles.
+    u32 first(u32 vertex) const { return first_[vertex]; }
+    bool is_used(u32 vertex) const { return first_[vertex] != none; }
+    bool is_boundary_vertex(u32 vertex) const { return is_boundary(first_[vertex]); }
+    /// The next half-edge from the same vertex, counter-clockwise, or half_edges::boundary behind the last one.
+    u32 next_around(u32 half_edge) const { return opposite_[before(half_edge)]; }
+    /// Calls action(half-edge) for every half-edge from the vertex, counter-clockwise. Pre: is_used(vertex).
+    template <class Action>
+    void for_each_around(u32 vertex, Action&& action) const {
+        const u32 begin = first_[vertex];
+        u32 half_edge = begin;
+        do {
+            action(half_edge);
+            half_edge = next_around(half_edge);
+        } while (half_edge != begin && half_edge != half_edges::boundary);
+    }
+    /// Edges at the vertex.
+    u32 valence(u32 vertex) const;
+    /// The half-edge from a to b; `none` if there is none. (The edge may exist as the half-edge from b to a.)
+    u32 between(u32 a, u32 b) const;
+    bool has_edge(u32 a, u32 b) const;
+
+    /// Whether the two triangles at the edge may be replaced by the two at the other diagonal: the edge is interior,
+    /// the other diagonal is no edge yet, and no vertex is left with fewer than three edges (two on the boundary).
+    bool can_flip(u32 half_edge) const;
+    /// Pre: can_flip(). Half-edge h = (a, b) of triangle (a, b, c) with neighbour (b, a, d) becomes (d, c) of (c, a,
+    /// d), the neighbour (d, b, c). Returns the row of the neighbour.
+    u32 flip(u32 half_edge);
+
+    /// The vertices around a vertex, counter-clockwise: all of a closed fan, or from end to end of an open one.
+    /// Pre: is_used(vertex).
+    void ring(u32 vertex, std::vector<u32>& vertices) const;
+    /// A triangle of a hole, by positions in the ring.
+    using RingTriangle = std::array<u32, 3>;
+    /// The link condition: no edge of the triangulation between ring vertices that are not neighbours in the ring
+    /// exists already, and neither does its triangle, reversed (at a corner of a tetrahedron). Linear in the valences
+    /// of the ring. Pre: as remove().
+    bool can_remove(u32 vertex, std::span<const RingTriangle> triangulation) const;
+    /// Removes the vertex and triangulates the hole. An open ring is closed by the edge from its last vertex to its
+    /// first, a boundary edge. Appends the rows of the new triangles, in the order given.
+    /// Pre: can_remove(); the triangles are counter-clockwise and triangulate the polygon of the ring.
+    void remove(u32 vertex, std::span<const RingTriangle> triangulation, std::vector<u32>& new_rows);
+
+    /// Splits the edge by a vertex without triangles, and the one or two triangles there into two each, in new rows.
+    void split_edge(u32 half_edge, u32 vertex);
+    /// Splits the triangle into three by a vertex without triangles; two rows are new.
+    void split_triangle(u32 row, u32 vertex);
+    /// Adds a vertex without triangles; returns its number.
+    u32 add_vertex();
+
+    /// The triangles that are not empty, by row.
+    Array<Triangle> compact_triangles() const;
+
+private:
+    void set(u32 row, u32 a, u32 b, u32 c);
+    /// Makes two half-edges opposite; `one` or `other` may be half_edges::boundary.
+    void link(u32 one, u32 other);
+
+    Array<u32> corners_;  ///< by half-edge: its start
+    Array<u32> opposite_;  ///< by half-edge
+    Array<u32> first_;  ///< by vertex
+    std::size_t triangles_ = 0;
+    /// Of one edit: the half-edges outside the ring, and the new half-edges by the positions of their ends.
+    std::vector<u32> outside_, rows_, by_ends_;
+};
+
+}  // namespace scanmill
