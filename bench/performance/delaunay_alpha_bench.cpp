@@ -26,8 +26,8 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/point_sets.hpp"
 
 namespace {

@@ -15,10 +15,10 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/patches/a_patch.hpp"
-#include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 
 namespace scanmill {
 

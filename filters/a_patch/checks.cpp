@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
 #include "tessellate/tessellate.hpp"
 

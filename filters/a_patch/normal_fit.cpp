@@ -11,8 +11,8 @@
 #include "a_patch/outliers.hpp"
 #include "a_patch/repair.hpp"
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/distance/nearest_distances.hpp"
 
 namespace scanmill::a_patches {
 

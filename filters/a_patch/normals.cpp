@@ -8,10 +8,10 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
-#include "scanmill/geometry/fit/quadric.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/fit/quadric.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::a_patches {

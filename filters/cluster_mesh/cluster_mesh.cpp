@@ -18,13 +18,13 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/finished_mesh.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
-#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fill_holes/loop_filling.hpp"
-#include "scanmill/data/mesh.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
 

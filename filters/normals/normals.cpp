@@ -12,9 +12,9 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/point_tree.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
-#include "scanmill/data/point_tree.hpp"
 
 namespace scanmill {
 

@@ -14,8 +14,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill {
 

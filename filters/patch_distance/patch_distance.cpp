@@ -8,8 +8,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill {

@@ -12,8 +12,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/direction.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/data/spacing.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill {
 

@@ -16,10 +16,10 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
-#include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {

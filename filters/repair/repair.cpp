@@ -15,11 +15,11 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
-#include "scanmill/data/half_edges.hpp"
-#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

@@ -7,8 +7,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "sculpt/sculptor.hpp"
 

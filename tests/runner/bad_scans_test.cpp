@@ -139,8 +139,8 @@ TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
 ProgramResult raw_scans_of(const std::string& content, const TemporaryFolder& folder,
                            const std::vector<std::string>& options = {}) {
     folder.write("view.xyz", content);
-    std::vector<std::string> arguments{"run", test::source_folder() + "/workflows/raw-scans.yaml",
-                                       "view.xyz", "-o", "out"};
+    std::vector<std::string> arguments{"run", test::source_folder() + "/workflows/raw-scans.yaml", "view.xyz", "-o",
+                                       "out"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return scanmill_program(arguments, {.folder = folder.path(), .environment = {}});
 }

@@ -19,9 +19,9 @@ TEST_F(Batch, NobodyListening_IsNoReasonToStop) {
     write_batch("scans/*.xyz");
     for (const char* where : {">/dev/full", ">&-", "2>/dev/full", "2>&-", "--json >/dev/full", "--json | head -1"}) {
         std::filesystem::remove_all(folder_ / "out");
-        const std::string command = "cd '" + folder_.path().string() +
-                                    "' && (SCANMILL_PLUGIN_PATH='" + test::test_plugin_folder() + "' XDG_CACHE_HOME=home '" + test::program_file() + "' batch b.yaml -o out --no-cache " +
-                                    where + ") > /dev/null 2>&1";
+        const std::string command = "cd '" + folder_.path().string() + "' && (SCANMILL_PLUGIN_PATH='" +
+                                    test::test_plugin_folder() + "' XDG_CACHE_HOME=home '" + test::program_file() +
+                                    "' batch b.yaml -o out --no-cache " + where + ") > /dev/null 2>&1";
         const int status = std::system(command.c_str());
         EXPECT_TRUE(WIFEXITED(status)) << where;
         EXPECT_EQ(outputs().size(), 3u) << where;

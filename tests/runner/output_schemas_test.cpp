@@ -2,8 +2,8 @@
 // What the commands print with --json is what their schemas say. Every other test of this program that runs a command
 // with --json checks this too (tests/support/program.hpp).
 
-#include "support/folders.hpp"
 #include "support/output_schemas.hpp"
+#include "support/folders.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -73,10 +73,9 @@ TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
 TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran =
-        scanmill_program({"run", test::source_folder() + "/workflows/bernardini-1997.yaml", "ball.ply", "-o",
-                          "out", "--json"},
-                         {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program(
+        {"run", test::source_folder() + "/workflows/bernardini-1997.yaml", "ball.ply", "-o", "out", "--json"},
+        {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json scan = json::parse(scanmill_program({"info", "--json", (folder / "ball.ply").string()}).out);
     for (const auto& file : std::filesystem::directory_iterator(folder / "out")) {

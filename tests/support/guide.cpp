@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/folders.hpp"
 #include "support/guide.hpp"
+#include "support/folders.hpp"
 
 #include <gtest/gtest.h>
 

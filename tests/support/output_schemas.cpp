@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/folders.hpp"
 #include "support/output_schemas.hpp"
+#include "support/folders.hpp"
 
 #include <algorithm>
 #include <filesystem>

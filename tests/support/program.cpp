@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/folders.hpp"
 #include "support/program.hpp"
+#include "support/folders.hpp"
 
 #include <fcntl.h>
 #include <fmt/ranges.h>

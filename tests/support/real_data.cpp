@@ -14,7 +14,8 @@ std::optional<std::filesystem::path> in_collection(const std::filesystem::path& 
 
 std::optional<std::filesystem::path> fetched_data(std::string_view name) {
     const std::size_t slash = name.find('/');
-    return in_collection(std::filesystem::path(source_folder()) / "build/data" / name.substr(0, slash), name.substr(slash + 1));
+    return in_collection(std::filesystem::path(source_folder()) / "build/data" / name.substr(0, slash),
+                         name.substr(slash + 1));
 }
 
 std::optional<std::filesystem::path> shared_data(std::string_view name) {

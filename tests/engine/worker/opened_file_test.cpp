@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/worker/workbench.hpp"
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"

@@ -13,8 +13,8 @@
 
 #include "a_patch/a_patch.hpp"
 #include "scanmill/base/random.hpp"
-#include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/patches/a_patch.hpp"
 #include "support/mesh_operations.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"

@@ -8,8 +8,8 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
 #include "filters/known_models.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/doubts.hpp"
 #include "support/shapes.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/doubts.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "filters/delaunay/regular_cells.hpp"
 #include "filters/alpha_solid/weighted_cases.hpp"
+#include "filters/delaunay/regular_cells.hpp"
 
 namespace scanmill {
 namespace {

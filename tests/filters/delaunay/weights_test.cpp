@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "filters/delaunay/regular_cells.hpp"
 #include "filters/alpha_solid/weighted_cases.hpp"
+#include "filters/delaunay/regular_cells.hpp"
 
 namespace scanmill {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "edge_flip/edge_flip.hpp"
 #include "scanmill/base/random.hpp"
-#include "scanmill/geometry/mesh/editable_mesh.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/mesh/editable_mesh.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 

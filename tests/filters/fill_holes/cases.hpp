@@ -10,8 +10,8 @@
 
 #include "fill_holes/fill_holes.hpp"
 #include "scanmill/base/random.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "support/doubts.hpp"
 #include "support/mesh_operations.hpp"
 #include "support/shapes.hpp"

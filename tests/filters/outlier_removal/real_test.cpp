@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "filters/outlier_removal/cases.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/point_tree.hpp"
 #include "scanmill/data/spacing.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "scanmill/base/random.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"

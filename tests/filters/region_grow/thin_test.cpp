@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "geometry/growing/patch.hpp"
 #include "filters/region_grow/cases.hpp"
+#include "geometry/growing/patch.hpp"
 #include "region_grow/boundaries.hpp"
 #include "support/doubts.hpp"
 

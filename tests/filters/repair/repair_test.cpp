@@ -6,8 +6,8 @@
 
 #include "repair/repair.hpp"
 #include "scanmill/base/random.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/doubts.hpp"
 #include "support/mesh_operations.hpp"
 #include "support/real_data.hpp"

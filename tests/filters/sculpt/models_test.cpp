@@ -6,8 +6,8 @@
 
 #include "filters/known_models.hpp"
 #include "filters/sculpt/cases.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/formats/files.hpp"
 
 namespace scanmill {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {

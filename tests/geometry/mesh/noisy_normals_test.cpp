@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "support/mesh_operations.hpp"
 #include "support/shapes.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <set>
 
-#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 

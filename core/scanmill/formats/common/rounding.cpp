@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "scanmill/data/topology.hpp"
 #include "scanmill/formats/common/position_merger.hpp"
 #include "scanmill/formats/common/writing.hpp"
-#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

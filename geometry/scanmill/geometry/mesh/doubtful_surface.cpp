@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "scanmill/data/half_edges.hpp"
-#include "scanmill/data/topology.hpp"
 #include "scanmill/data/spacing.hpp"
+#include "scanmill/data/topology.hpp"
 
 namespace scanmill {
 

@@ -17,8 +17,8 @@
 #include "scanmill/base/elementary.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/bounds.hpp"
-#include "scanmill/geometry/fit/jet.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/fit/jet.hpp"
 
 namespace scanmill {
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The description of a struct's members, written once beside the struct:
+///
+///     struct Effort {
+///         double seconds = 0;
+///         u64 peak_memory = 0;
+///     };
+///     constexpr auto fields(const Effort*) {
+///         return std::tuple{field("seconds", &Effort::seconds, "Wall-clock time.").unit("s"),
+///                           field("peak-memory", &Effort::peak_memory, "Largest resident size.").unit("bytes")};
+///     }
+///
+/// Messages, JSON, JSON Schema (json.hpp), the columns of tables and the fields of kinds derive from it. The function
+/// is found by its argument's namespace. A derived struct joins its base's fields to its own with std::tuple_cat.
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+namespace scanmill {
+
+/// How numbers change with the frame: under a motion, a shift of the origin, another unit.
+enum class Meaning {
+    plain,      ///< not at all
+    position,   ///< a point relative to the frame's origin; JSON has world coordinates
+    direction,  ///< a unit vector, or zero: a motion turns it
+    length      ///< another unit scales it
+};
+
+template <class Owner, class Type>
+struct Field {
+    using Member = Type;
+
+    const char* name;  ///< in lower case with hyphens
+    Type Owner::*member;
+    const char* doc;
+    const char* unit_text = "";
+    Meaning meaning = Meaning::plain;
+    bool is_optional = false;
+    bool is_nullable = false;
+    bool is_flat = false;
+    bool is_by_name = false;
+    bool (*applies)(const Owner&) = nullptr;
+
+    /// "s", "bytes", "rad": of the number.
+    constexpr Field unit(const char* text) const {
+        Field field = *this;
+        field.unit_text = text;
+        return field;
+    }
+    constexpr Field means(Meaning what) const {
+        Field field = *this;
+        field.meaning = what;
+        return field;
+    }
+    /// Absent where it has the value of a default-constructed one.
+    constexpr Field optional() const {
+        Field field = *this;
+        field.is_optional = true;
+        return field;
+    }
+    /// A number that may be NaN, a text that may be empty: null in JSON.
+    constexpr Field nullable() const {
+        Field field = *this;
+        field.is_nullable = true;
+        return field;
+    }
+    /// A struct whose fields are written among those of its owner.
+    constexpr Field flat() const {
+        Field field = *this;
+        field.is_flat = true;
+        return field;
+    }
+    /// Metrics as an object of numbers by name, as results show them.
+    constexpr Field by_name() const {
+        Field field = *this;
+        field.is_by_name = true;
+        return field;
+    }
+    /// Null, and unchanged when it is read, for objects that the condition does not hold for. Fields that the condition
+    /// uses come before this one.
+    constexpr Field only_if(bool (*condition)(const Owner&)) const {
+        Field field = *this;
+        field.applies = condition;
+        return field;
+    }
+};
+
+template <class Owner, class Type>
+constexpr Field<Owner, Type> field(const char* name, Type Owner::*member, const char* doc = "") {
+    return {name, member, doc};
+}
+
+template <class T>
+concept Described = requires { fields(static_cast<const T*>(nullptr)); };
+
+/// Calls action(field) for every field, in order.
+template <Described T, class Action>
+constexpr void for_each_field(Action&& action) {
+    std::apply([&](const auto&... each) { (action(each), ...); }, fields(static_cast<const T*>(nullptr)));
+}
+
+/// An enumeration without gaps, described by the names of its values from 0 on:
+///
+///     constexpr std::array<std::string_view, 2> names_of(const Outcome*) { return {"ok", "failed"}; }
+template <class T>
+concept Named = requires { names_of(static_cast<const T*>(nullptr)).size(); };
+
+template <Named Enumeration>
+constexpr std::string_view name_of(Enumeration value) {
+    constexpr auto names = names_of(static_cast<const Enumeration*>(nullptr));
+    return names[static_cast<std::size_t>(value)];
+}
+
+template <Named Enumeration>
+constexpr std::optional<Enumeration> value_named(std::string_view name) {
+    constexpr auto names = names_of(static_cast<const Enumeration*>(nullptr));
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return static_cast<Enumeration>(i);
+    return std::nullopt;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// JSON of described structs (fields.hpp), both ways, and its JSON Schema.
+///
+/// JsonForm<T> converts a type: numbers, texts, named enumerations, lists, optionals, variants and described structs
+/// have one here; other types specialise it beside themselves. The same form serves messages and caches as CBOR, where
+/// NaN keeps its bits and texts need not be UTF-8, and JSON text, where NaN is null.
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scanmill/record/fields.hpp"
+
+namespace scanmill {
+
+using Json = nlohmann::ordered_json;
+
+/// A value that has not the form of its type, with the path of its member. The sentence continues the path:
+/// "'touches[3].phi' is not a number". Callers see an Error instead: read_json().
+struct JsonMismatch {
+    std::string path, sentence;
+
+    /// The same, seen from the owner of the member `name`.
+    JsonMismatch in(std::string_view name) &&;
+    JsonMismatch in(std::size_t index) &&;
+};
+
+template <class T>
+struct JsonForm;
+
+template <class T>
+Json json_of(const T& value) {
+    return JsonForm<T>::write(value);
+}
+/// Throws Error with the path of the first member that is missing, unknown or of another form. `subject` begins the
+/// sentence if that is the whole: "the document".
+template <class T>
+void read_json(const Json& json, T& value, std::string_view subject = "the document");
+
+[[noreturn]] void throw_mismatch(const JsonMismatch& mismatch, std::string_view subject);
+
+/// CBOR.
+std::string cbor_of(const Json& json);
+/// Throws Error "… cannot be read" for other bytes.
+Json json_from_cbor(std::string_view bytes, std::string_view subject);
+/// One line of text; bytes that are not UTF-8 are replaced.
+std::string text_of(const Json& json);
+
+// Parts of schemas (draft 7).
+
+namespace schema {
+
+inline Json type(const char* name) { return {{"type", name}}; }
+inline Json list_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}}; }
+inline Json map_of(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
+/// With a description: the text and, where there is one, the unit.
+Json described(std::string_view text, std::string_view unit, Json schema);
+/// The same, or null.
+Json or_null(Json schema);
+Json names(std::span<const std::string_view> names);
+/// A list of exactly `size` items.
+Json tuple_of(std::size_t size, Json item);
+/// An object without members that may get some; members that are not added are refused.
+Json object();
+void add(Json& object, const std::string& name, Json schema, bool is_required = true);
+/// A whole document: its title, `"scanmill": 1` and the members of `object`.
+Json document(std::string_view title, const Json& object);
+
+}  // namespace schema
+
+// Forms.
+
+void require_size(const Json& list, std::size_t size);
+void require_known(const Json& object, const std::vector<std::string_view>& known);
+
+template <class T>
+void read_items(const Json& list, T* items) {
+    std::size_t index = 0;
+    try {
+        for (; index < list.size(); ++index) JsonForm<T>::read(list[index], items[index]);
+    } catch (JsonMismatch& mismatch) {
+        throw std::move(mismatch).in(index);
+    }
+}
+
+template <>
+struct JsonForm<bool> {
+    static Json write(bool value) { return value; }
+    static void read(const Json& json, bool& value) {
+        if (!json.is_boolean()) throw JsonMismatch{{}, "is not true or false"};
+        value = json.get<bool>();
+    }
+    static Json schema() { return schema::type("boolean"); }
+};
+
+template <std::integral T>
+struct JsonForm<T> {
+    static Json write(T value) { return value; }
+    static void read(const Json& json, T& value) {
+        constexpr T least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
+        const bool fits = json.is_number_unsigned()
+                              ? std::in_range<T>(json.get<std::uint64_t>())
+                              : json.is_number_integer() && std::in_range<T>(json.get<std::int64_t>());
+        if (!fits) throw JsonMismatch{{}, fmt::format("is not a whole number from {} to {}", least, most)};
+        value = json.get<T>();
+    }
+    static Json schema() {
+        Json schema = schema::type("integer");
+        if constexpr (std::unsigned_integral<T>) schema["minimum"] = 0;
+        return schema;
+    }
+};
+
+template <std::floating_point T>
+struct JsonForm<T> {
+    static Json write(T value) { return value; }
+    static void read(const Json& json, T& value) {
+        if (!json.is_number()) throw JsonMismatch{{}, "is not a number"};
+        value = json.get<T>();
+    }
+    static Json schema() { return schema::type("number"); }
+};
+
+template <>
+struct JsonForm<std::string> {
+    static Json write(const std::string& value) { return value; }
+    static void read(const Json& json, std::string& value) {
+        if (!json.is_string()) throw JsonMismatch{{}, "is not a text"};
+        value = json.get<std::string>();
+    }
+    static Json schema() { return schema::type("string"); }
+};
+
+template <>
+struct JsonForm<std::filesystem::path> {
+    static Json write(const std::filesystem::path& value) { return value.string(); }
+    static void read(const Json& json, std::filesystem::path& value) {
+        std::string text;
+        JsonForm<std::string>::read(json, text);
+        value = text;
+    }
+    static Json schema() { return schema::type("string"); }
+};
+
+std::string expected_names(std::span<const std::string_view> names, std::string_view found);
+
+template <Named T>
+struct JsonForm<T> {
+    static Json write(T value) { return name_of(value); }
+    static void read(const Json& json, T& value) {
+        std::string name;
+        JsonForm<std::string>::read(json, name);
+        const std::optional<T> found = value_named<T>(name);
+        if (!found) throw JsonMismatch{{}, expected_names(names_of(static_cast<const T*>(nullptr)), name)};
+        value = *found;
+    }
+    static Json schema() { return schema::names(names_of(static_cast<const T*>(nullptr))); }
+};
+
+template <class T>
+struct JsonForm<std::optional<T>> {
+    static Json write(const std::optional<T>& value) { return value ? json_of(*value) : Json(); }
+    static void read(const Json& json, std::optional<T>& value) {
+        value.reset();
+        if (!json.is_null()) JsonForm<T>::read(json, value.emplace());
+    }
+    static Json schema() { return schema::or_null(JsonForm<T>::schema()); }
+};
+
+template <class T, class Allocator>
+struct JsonForm<std::vector<T, Allocator>> {
+    static Json write(const std::vector<T, Allocator>& list) {
+        Json json = Json::array();
+        for (const T& item : list) json.push_back(json_of(item));
+        return json;
+    }
+    static void read(const Json& json, std::vector<T, Allocator>& list) {
+        if (!json.is_array()) throw JsonMismatch{{}, "is not a list"};
+        list = std::vector<T, Allocator>(json.size());
+        read_items<T>(json, list.data());
+    }
+    static Json schema() { return schema::list_of(JsonForm<T>::schema()); }
+};
+
+template <class T, std::size_t size>
+struct JsonForm<std::array<T, size>> {
+    static Json write(const std::array<T, size>& list) {
+        Json json = Json::array();
+        for (const T& item : list) json.push_back(json_of(item));
+        return json;
+    }
+    static void read(const Json& json, std::array<T, size>& list) {
+        require_size(json, size);
+        read_items<T>(json, list.data());
+    }
+    static Json schema() { return schema::tuple_of(size, JsonForm<T>::schema()); }
+};
+
+/// The coefficients, column by column.
+template <int rows, int columns>
+struct JsonForm<Eigen::Matrix<double, rows, columns>> {
+    using Matrix = Eigen::Matrix<double, rows, columns>;
+    static Json write(const Matrix& matrix) {
+        Json json = Json::array();
+        for (const double number : matrix.reshaped()) json.push_back(number);
+        return json;
+    }
+    static void read(const Json& json, Matrix& matrix) {
+        require_size(json, static_cast<std::size_t>(matrix.size()));
+        read_items<double>(json, matrix.data());
+    }
+    static Json schema() { return schema::tuple_of(rows * columns, JsonForm<double>::schema()); }
+};
+
+/// An object of texts by name.
+template <>
+struct JsonForm<std::vector<std::pair<std::string, std::string>>> {
+    using Texts = std::vector<std::pair<std::string, std::string>>;
+    static Json write(const Texts& texts);
+    static void read(const Json& json, Texts& texts);
+    static Json schema() { return schema::map_of(JsonForm<std::string>::schema()); }
+};
+
+/// An object of values by name.
+template <class T>
+struct JsonForm<std::map<std::string, T>> {
+    static Json write(const std::map<std::string, T>& values) {
+        Json json = Json::object();
+        for (const auto& [name, value] : values) json[name] = json_of(value);
+        return json;
+    }
+    static void read(const Json& json, std::map<std::string, T>& values) {
+        if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
+        values.clear();
+        for (const auto& [name, value] : json.items()) JsonForm<T>::read(value, values[name]);
+    }
+    static Json schema() { return schema::map_of(JsonForm<T>::schema()); }
+};
+
+template <class T>
+struct JsonForm<std::shared_ptr<const T>> {
+    static Json write(const std::shared_ptr<const T>& value) { return json_of(*value); }
+    static void read(const Json& json, std::shared_ptr<const T>& value) {
+        auto made = std::make_shared<T>();
+        JsonForm<T>::read(json, *made);
+        value = std::move(made);
+    }
+};
+
+template <>
+struct JsonForm<std::monostate> {
+    static Json write(std::monostate) { return nullptr; }
+    static void read(const Json&, std::monostate) {}
+};
+
+/// [index of the alternative, its value].
+template <class... Types>
+struct JsonForm<std::variant<Types...>> {
+    static Json write(const std::variant<Types...>& value) {
+        return std::visit([&](const auto& item) { return Json::array({value.index(), json_of(item)}); }, value);
+    }
+    static void read(const Json& json, std::variant<Types...>& value) {
+        require_size(json, 2);
+        std::size_t wanted = 0, index = 0;
+        JsonForm<std::size_t>::read(json[0], wanted);
+        const auto read_if_wanted = [&]<class Type>(Type item) {
+            if (index++ != wanted) return;
+            JsonForm<Type>::read(json[1], item);
+            value = std::move(item);
+        };
+        (read_if_wanted(Types{}), ...);
+        if (wanted >= index) throw JsonMismatch{{}, "has no such alternative"};
+    }
+};
+
+/// Types that results show as an object of numbers by name: Metrics.
+template <class T>
+struct JsonByName;
+
+/// Described structs. A frame's origin is added to positions by the owner of the frame, before and after.
+template <Described T>
+struct JsonForm<T> {
+    static Json write(const T& object) {
+        Json json = Json::object();
+        write_members(json, object);
+        return json;
+    }
+    static void write_members(Json& json, const T& object) {
+        for_each_field<T>([&](const auto& field) {
+            const auto& member = object.*field.member;
+            using Member = std::remove_cvref_t<decltype(member)>;
+            if constexpr (Described<Member>)
+                if (field.is_flat) return JsonForm<Member>::write_members(json, member);
+            if (field.is_optional && is_default(field, member)) return;
+            Json& value = json[field.name];
+            if (field.applies && !field.applies(object)) return;  // null
+            if constexpr (requires { JsonByName<Member>::write(member); })
+                if (field.is_by_name) {
+                    value = JsonByName<Member>::write(member);
+                    return;
+                }
+            if constexpr (std::same_as<Member, std::string>)
+                if (field.is_nullable && member.empty()) return;
+            value = json_of(member);
+        });
+    }
+
+    static void read(const Json& json, T& object) {
+        if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
+        std::vector<std::string_view> known;
+        read_members(json, object, known);
+        require_known(json, known);
+    }
+    static void read_members(const Json& json, T& object, std::vector<std::string_view>& known) {
+        for_each_field<T>([&](const auto& field) {
+            auto& member = object.*field.member;
+            using Member = std::remove_cvref_t<decltype(member)>;
+            if constexpr (Described<Member>)
+                if (field.is_flat) return JsonForm<Member>::read_members(json, member, known);
+            known.push_back(field.name);
+            const auto found = json.find(field.name);
+            if (found == json.end()) {
+                if (!field.is_optional) throw JsonMismatch{field.name, "is missing"};
+                member = default_of(field);
+                return;
+            }
+            try {
+                if (field.applies && !field.applies(object)) {
+                    if (!found->is_null()) throw JsonMismatch{{}, "is not null, but does not apply here"};
+                } else if (field.is_nullable && found->is_null()) {
+                    set_undefined(member);
+                } else {
+                    JsonForm<Member>::read(*found, member);
+                }
+            } catch (JsonMismatch& mismatch) {
+                throw std::move(mismatch).in(field.name);
+            }
+        });
+    }
+
+    static Json schema() {
+        Json object = schema::object();
+        add_schemas(object);
+        return object;
+    }
+    static void add_schemas(Json& object) {
+        for_each_field<T>([&](const auto& field) {
+            using Member = std::remove_cvref_t<decltype(std::declval<T>().*field.member)>;
+            if constexpr (Described<Member>)
+                if (field.is_flat) return JsonForm<Member>::add_schemas(object);
+            Json form;
+            if constexpr (requires { JsonByName<Member>::schema(); })
+                form = field.is_by_name ? JsonByName<Member>::schema() : JsonForm<Member>::schema();
+            else
+                form = JsonForm<Member>::schema();
+            if (field.is_nullable || field.applies) form = schema::or_null(std::move(form));
+            schema::add(object, field.name, schema::described(field.doc, field.unit_text, std::move(form)),
+                        !field.is_optional);
+        });
+    }
+
+private:
+    /// The member of a default-constructed object.
+    static const auto& default_of(const auto& field) {
+        static const T object{};
+        return object.*field.member;
+    }
+    template <class Member>
+    static bool is_default(const auto& field, const Member& member) {
+        if constexpr (requires { member.empty(); })
+            return member.empty();
+        else
+            return member == default_of(field);
+    }
+    template <class Member>
+    static void set_undefined(Member& member) {
+        if constexpr (std::floating_point<Member>)
+            member = std::numeric_limits<Member>::quiet_NaN();
+        else
+            member = Member();
+    }
+};
+
+template <class T>
+void read_json(const Json& json, T& value, std::string_view subject) {
+    try {
+        JsonForm<T>::read(json, value);
+    } catch (const JsonMismatch& mismatch) {
+        throw_mismatch(mismatch, subject);
+    }
+}
+
+template <class T>
+T from_json(const Json& json, std::string_view subject = "the document") {
+    T value{};
+    read_json(json, value, subject);
+    return value;
+}
+
+}  // namespace scanmill
