@@ -284,6 +284,7 @@ struct JsonForm<std::variant<Types...>> {
         (read_if_wanted(Types{}), ...);
         if (wanted >= index) throw JsonMismatch{{}, "has no such alternative"};
     }
+    static Json schema() { return Json::object(); }
 };
 
 /// Types that results show as an object of numbers by name: Metrics.
@@ -382,8 +383,10 @@ private:
     static bool is_default(const auto& field, const Member& member) {
         if constexpr (requires { member.empty(); })
             return member.empty();
-        else
+        else if constexpr (std::equality_comparable<Member>)
             return member == default_of(field);
+        else
+            return false;
     }
     template <class Member>
     static void set_undefined(Member& member) {
