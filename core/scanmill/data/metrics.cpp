@@ -3,36 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include <algorithm>
-#include <array>
-
 namespace scanmill {
-
-namespace {
-constexpr std::array<std::string_view, 9> unit_names{"count", "length",  "area",   "volume", "angle",
-                                                     "ratio", "seconds", "number", "boolean"};
-constexpr std::array<std::string_view, 3> better_names{"neither", "larger", "smaller"};
-
-/// The enumerator whose name is at the same place in `names`.
-template <class Enum>
-std::optional<Enum> enumerator(const auto& names, std::string_view name) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end()) return std::nullopt;
-    return static_cast<Enum>(found - names.begin());
-}
-
-}  // namespace
-
-std::string_view name_of(Unit unit) { return unit_names[static_cast<std::size_t>(unit)]; }
-
-std::optional<Unit> unit_named(std::string_view name) { return enumerator<Unit>(unit_names, name); }
-
-std::string_view name_of(Better better) { return better_names[static_cast<std::size_t>(better)]; }
-
-std::optional<Better> better_named(std::string_view name) { return enumerator<Better>(better_names, name); }
 
 void Metrics::set(std::string_view name, double value, Unit kind) {
     const auto found = std::ranges::find(values, name, &Metric::name);

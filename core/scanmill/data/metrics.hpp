@@ -4,25 +4,25 @@
 ///
 /// Metrics of an object with a size contain the metric `diagonal`, which `%diag` refers to.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "scanmill/data/frame.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
 /// What a metric's number counts or measures. Lengths are in the scan's unit, angles in radians, ratios plain
 /// fractions.
 enum class Unit { count, length, area, volume, angle, ratio, seconds, number, boolean };
-std::string_view name_of(Unit unit);
-std::optional<Unit> unit_named(std::string_view name);
+constexpr std::array<std::string_view, 9> names_of(const Unit*) {
+    return {"count", "length", "area", "volume", "angle", "ratio", "seconds", "number", "boolean"};
+}
 
 /// Which of two values of a metric is the better one; `neither` also for those that only should not change.
 enum class Better { neither, larger, smaller };
-std::string_view name_of(Better better);
-std::optional<Better> better_named(std::string_view name);
+constexpr std::array<std::string_view, 3> names_of(const Better*) { return {"neither", "larger", "smaller"}; }
 
 struct Metric {
     std::string name;
@@ -30,6 +30,10 @@ struct Metric {
     Unit unit;
     bool operator==(const Metric&) const = default;
 };
+constexpr auto fields(const Metric*) {
+    return std::tuple{field("name", &Metric::name), field("value", &Metric::value).nullable(),
+                      field("unit", &Metric::unit)};
+}
 
 struct Metrics {
     std::vector<Metric> values;
@@ -39,6 +43,9 @@ struct Metrics {
     void set(std::string_view name, double value, Unit kind);
     const Metric* find(std::string_view name) const;
 };
+constexpr auto fields(const Metrics*) {
+    return std::tuple{field("values", &Metrics::values), field("unit", &Metrics::unit, "Of lengths.")};
+}
 
 /// "3000", "0.0125", "yes": a metric's number for people; angles in degrees, ratios in percent.
 std::string display(const Metric& metric);

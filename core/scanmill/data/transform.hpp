@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scanmill/data/frame.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
@@ -19,5 +20,10 @@ struct RigidTransform {
 
     Vec3 apply(const Vec3& world) const { return rotation * world + translation; }
 };
+constexpr auto fields(const RigidTransform*) {
+    return std::tuple{field("rotation", &RigidTransform::rotation), field("translation", &RigidTransform::translation),
+                      field("unit", &RigidTransform::unit), field("from", &RigidTransform::from),
+                      field("to", &RigidTransform::to)};
+}
 
 }  // namespace scanmill

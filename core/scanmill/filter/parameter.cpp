@@ -41,7 +41,7 @@ std::vector<std::string> choice_names(const ParameterSpec& spec) {
 
 /// What messages and parsing need of a type.
 struct TypeRow {
-    std::string_view name, noun, example;
+    std::string_view noun, example;
     ParameterScalar (*parse)(const ParameterSpec& spec, const std::string& text);
     bool parse_names_expected;  ///< its errors already contain what was expected
 };
@@ -80,15 +80,15 @@ ParameterScalar parse_quantity(const ParameterSpec&, const std::string& text) {
 
 /// By ParameterType.
 constexpr std::array<TypeRow, 9> types{{
-    {"boolean", "true or false", "", parse_boolean, false},
-    {"integer", "a whole number", "", parse_integer, false},
-    {"number", "a number", "", parse_plain_number, false},
-    {"choice", "one of ", "", parse_choice, true},
-    {"text", "a text", "", parse_text, false},
-    {"path", "a path", "", parse_text, false},
-    {"length", "a length", length_examples, parse_quantity<Length>, true},
-    {"angle", "an angle", angle_examples, parse_quantity<Angle>, true},
-    {"ratio", "a ratio", ratio_examples, parse_quantity<Ratio>, true},
+    {"true or false", "", parse_boolean, false},
+    {"a whole number", "", parse_integer, false},
+    {"a number", "", parse_plain_number, false},
+    {"one of ", "", parse_choice, true},
+    {"a text", "", parse_text, false},
+    {"a path", "", parse_text, false},
+    {"a length", length_examples, parse_quantity<Length>, true},
+    {"an angle", angle_examples, parse_quantity<Angle>, true},
+    {"a ratio", ratio_examples, parse_quantity<Ratio>, true},
 }};
 
 const TypeRow& row_of(ParameterType type) { return types[static_cast<std::size_t>(type)]; }
@@ -155,14 +155,6 @@ void require_item_in_range(const ParameterSpec& spec, const ParameterScalar& ite
 }
 
 }  // namespace
-
-std::string_view name_of(ParameterType type) { return row_of(type).name; }
-
-std::optional<ParameterType> parameter_type_named(std::string_view name) {
-    const auto found = std::ranges::find(types, name, &TypeRow::name);
-    if (found == types.end()) return std::nullopt;
-    return static_cast<ParameterType>(found - types.begin());
-}
 
 std::string expectation(const ParameterSpec& spec) {
     const TypeRow& type = row_of(spec.type);

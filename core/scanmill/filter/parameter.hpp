@@ -14,18 +14,21 @@
 #include <vector>
 
 #include "scanmill/data/quantity.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
 enum class ParameterType { boolean, integer, number, choice, text, path, length, angle, ratio };
-std::string_view name_of(ParameterType type);
-std::optional<ParameterType> parameter_type_named(std::string_view name);
+constexpr std::array<std::string_view, 9> names_of(const ParameterType*) {
+    return {"boolean", "integer", "number", "choice", "text", "path", "length", "angle", "ratio"};
+}
 
 /// A word in place of a value: `auto`, `none`.
 struct Word {
     std::string text;
     bool operator==(const Word&) const = default;
 };
+constexpr auto fields(const Word*) { return std::tuple{field("text", &Word::text)}; }
 
 /// Choices, texts and paths are strings.
 using ParameterScalar = std::variant<bool, std::int64_t, double, std::string, Length, Angle, Ratio, Word>;
@@ -96,5 +99,6 @@ struct ParameterSet {
 
     const ParameterValue* find(std::string_view name) const;
 };
+constexpr auto fields(const ParameterSet*) { return std::tuple{field("values", &ParameterSet::values)}; }
 
 }  // namespace scanmill

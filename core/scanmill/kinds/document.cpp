@@ -2,6 +2,7 @@
 #include "scanmill/kinds/document.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -29,6 +30,51 @@ private:
 };
 
 }  // namespace
+
+void JsonForm<Kind>::read(const Json& json, Kind& kind) {
+    std::string name;
+    JsonForm<std::string>::read(json, name);
+    const std::optional<Kind> found = kind_named(name);
+    if (!found) throw JsonMismatch{{}, fmt::format("is '{}'; expected one of {}", name, kind_names())};
+    kind = *found;
+}
+
+void JsonForm<LengthUnit>::read(const Json& json, LengthUnit& unit) {
+    unit = LengthUnit::unknown;
+    if (json.is_null()) return;
+    std::string text;
+    JsonForm<std::string>::read(json, text);
+    const std::optional<LengthUnit> found = length_unit(text);
+    if (!found)
+        throw JsonMismatch{{},
+                           fmt::format("is the unknown unit '{}'; expected one of {}", text, length_unit_symbols())};
+    unit = *found;
+}
+
+Json JsonForm<LengthUnit>::schema() {
+    return schema::described("The unit of lengths; null: not declared.", "",
+                             {{"enum", {"um", "mm", "cm", "m", "in", "ft", nullptr}}});
+}
+
+Json JsonByName<Metrics>::write(const Metrics& metrics) {
+    Json json = Json::object();
+    for (const auto& [name, value, unit] : metrics.values) {
+        if (unit == Unit::boolean)
+            json[name] = value != 0;
+        else if (!std::isfinite(value))
+            json[name] = nullptr;
+        else if (unit == Unit::count && value == std::round(value) && std::abs(value) < 1e15)
+            json[name] = static_cast<std::int64_t>(value);
+        else
+            json[name] = value;
+    }
+    return json;
+}
+
+Json JsonByName<Metrics>::schema() {
+    return schema::described("Numbers by name; null: not finite.", "",
+                             schema::map_of({{"type", {"number", "boolean", "null"}}}));
+}
 
 Json parse_document(std::string_view text) {
     try {

@@ -5,16 +5,59 @@
 /// A document is an object with `"scanmill": 1`, a `unit` and the member that identifies its kind. Errors use our
 /// words, not those of the JSON library.
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "scanmill/data/metrics.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/kinds/kind.hpp"
+#include "scanmill/record/json.hpp"
 
 namespace scanmill {
 
-using Json = nlohmann::ordered_json;
+// Forms of small types.
+
+/// Its name.
+template <>
+struct JsonForm<Kind> {
+    static Json write(Kind kind) { return kind.name(); }
+    static void read(const Json& json, Kind& kind);
+    static Json schema() { return schema::type("string"); }
+};
+
+/// Its symbol; null: unknown.
+template <>
+struct JsonForm<LengthUnit> {
+    static Json write(LengthUnit unit) { return unit == LengthUnit::unknown ? Json() : Json(symbol(unit)); }
+    static void read(const Json& json, LengthUnit& unit);
+    static Json schema();
+};
+
+/// As people write it.
+template <class Quantity>
+struct QuantityForm {
+    static Json write(const Quantity& quantity) { return quantity.text(); }
+    static void read(const Json& json, Quantity& quantity) {
+        std::string text;
+        JsonForm<std::string>::read(json, text);
+        quantity = Quantity::parse(text);
+    }
+    static Json schema() { return schema::type("string"); }
+};
+template <>
+struct JsonForm<Length> : QuantityForm<Length> {};
+template <>
+struct JsonForm<Angle> : QuantityForm<Angle> {};
+template <>
+struct JsonForm<Ratio> : QuantityForm<Ratio> {};
+
+/// Numbers, true and false; counts are integers, and a number that is not finite is null.
+template <>
+struct JsonByName<Metrics> {
+    static Json write(const Metrics& metrics);
+    static Json schema();
+};
 
 /// Throws Error for text that is not JSON (with the line), a key that is twice in one object, and nesting deeper than
 /// 16 levels.
@@ -42,6 +85,6 @@ Vec3 vector_of(const Json& list, const std::string& what);
 Json unit_json(LengthUnit unit);
 Json json_of(const Vec3& vector);
 /// Names and values; a value that is not finite is null.
-Json metrics_json(const Metrics& metrics);
+inline Json metrics_json(const Metrics& metrics) { return JsonByName<Metrics>::write(metrics); }
 
 }  // namespace scanmill

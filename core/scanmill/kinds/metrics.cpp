@@ -18,19 +18,6 @@
 
 namespace scanmill {
 
-Json metrics_json(const Metrics& metrics) {
-    Json json = Json::object();
-    for (const Metric& metric : metrics.values) {
-        if (metric.unit == Unit::boolean)
-            json[metric.name] = metric.value != 0;
-        else if (std::isfinite(metric.value))
-            json[metric.name] = metric.value;
-        else
-            json[metric.name] = nullptr;
-    }
-    return json;
-}
-
 template <>
 struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics> {
     static constexpr std::string_view name = "metrics";
@@ -65,7 +52,7 @@ struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics> {
         metrics.unit = unit_member(document);
         for (const auto& [name, value] : values.items()) {
             const std::string unit_text = text_member(units, name, "'units'");
-            const std::optional<Unit> unit = unit_named(unit_text);
+            const std::optional<Unit> unit = value_named<Unit>(unit_text);
             if (!unit) throw Error("the metric '{}' has the unknown unit '{}'", name, unit_text);
             if (!value.is_number() && !value.is_boolean() && !value.is_null())
                 throw Error("the metric '{}' is not a number, true, false or null", name);

@@ -16,17 +16,17 @@ using Json = nlohmann::ordered_json;
 constexpr int manifest_version = 1;
 
 template <class T>
-concept Named =
-    std::same_as<T, Kind> || std::same_as<T, Unit> || std::same_as<T, ParameterType> || std::same_as<T, Better>;
+concept HasName = Named<T> || std::same_as<T, Kind>;
 template <class T>
 concept List = std::same_as<T, std::vector<typename T::value_type>>;
 template <class T>
 concept Optional = std::same_as<T, std::optional<typename T::value_type>>;
 
 std::optional<Kind> find_named(const std::string& name, Kind) { return kind_named(name); }
-std::optional<Unit> find_named(const std::string& name, Unit) { return unit_named(name); }
-std::optional<Better> find_named(const std::string& name, Better) { return better_named(name); }
-std::optional<ParameterType> find_named(const std::string& name, ParameterType) { return parameter_type_named(name); }
+template <Named T>
+std::optional<T> find_named(const std::string& name, T) {
+    return value_named<T>(name);
+}
 
 /// Reads or writes the members of a JSON object.
 class Archive {
@@ -67,7 +67,7 @@ public:
 private:
     template <class T>
     void convert(Json& json, const char* key, T& value) {
-        if constexpr (Named<T>) {
+        if constexpr (HasName<T>) {
             if (!reads_) {
                 json = name_of(value);
                 return;

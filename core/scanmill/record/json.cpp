@@ -43,6 +43,10 @@ Json json_from_cbor(std::string_view bytes, std::string_view subject) {
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+void require_object(const Json& json) {
+    if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
+}
+
 void require_size(const Json& list, std::size_t size) {
     if (!list.is_array() || list.size() != size)
         throw JsonMismatch{{}, fmt::format("is not a list of {} values", size)};
@@ -60,21 +64,6 @@ void require_known(const Json& object, const std::vector<std::string_view>& know
 std::string expected_names(std::span<const std::string_view> names, std::string_view found) {
     const std::vector<std::string> all(names.begin(), names.end());
     return fmt::format("is '{}'; expected {}{}", found, enumerated(all), did_you_mean(std::string(found), all));
-}
-
-using Texts = std::vector<std::pair<std::string, std::string>>;
-
-Json JsonForm<Texts>::write(const Texts& texts) {
-    Json json = Json::object();
-    for (const auto& [name, value] : texts) json[name] = value;
-    return json;
-}
-
-void JsonForm<Texts>::read(const Json& json, Texts& texts) {
-    if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
-    texts.clear();
-    for (const auto& [name, value] : json.items())
-        JsonForm<std::string>::read(value, texts.emplace_back(name, "").second);
 }
 
 namespace schema {

@@ -83,6 +83,7 @@ Json document(std::string_view title, const Json& object);
 
 // Forms.
 
+void require_object(const Json& json);
 void require_size(const Json& list, std::size_t size);
 void require_known(const Json& object, const std::vector<std::string_view>& known);
 
@@ -93,6 +94,15 @@ void read_items(const Json& list, T* items) {
         for (; index < list.size(); ++index) JsonForm<T>::read(list[index], items[index]);
     } catch (JsonMismatch& mismatch) {
         throw std::move(mismatch).in(index);
+    }
+}
+
+template <class T>
+void read_member(const Json& json, std::string_view name, T& value) {
+    try {
+        JsonForm<T>::read(json, value);
+    } catch (JsonMismatch& mismatch) {
+        throw std::move(mismatch).in(name);
     }
 }
 
@@ -225,13 +235,21 @@ struct JsonForm<Eigen::Matrix<double, rows, columns>> {
     static Json schema() { return schema::tuple_of(rows * columns, JsonForm<double>::schema()); }
 };
 
-/// An object of texts by name.
-template <>
-struct JsonForm<std::vector<std::pair<std::string, std::string>>> {
-    using Texts = std::vector<std::pair<std::string, std::string>>;
-    static Json write(const Texts& texts);
-    static void read(const Json& json, Texts& texts);
-    static Json schema() { return schema::map_of(JsonForm<std::string>::schema()); }
+/// An object of values by name, in their order.
+template <class T>
+struct JsonForm<std::vector<std::pair<std::string, T>>> {
+    using Pairs = std::vector<std::pair<std::string, T>>;
+    static Json write(const Pairs& pairs) {
+        Json json = Json::object();
+        for (const auto& [name, value] : pairs) json[name] = json_of(value);
+        return json;
+    }
+    static void read(const Json& json, Pairs& pairs) {
+        require_object(json);
+        pairs.clear();
+        for (const auto& [name, value] : json.items()) read_member(value, name, pairs.emplace_back(name, T()).second);
+    }
+    static Json schema() { return schema::map_of(JsonForm<T>::schema()); }
 };
 
 /// An object of values by name.
@@ -243,9 +261,9 @@ struct JsonForm<std::map<std::string, T>> {
         return json;
     }
     static void read(const Json& json, std::map<std::string, T>& values) {
-        if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
+        require_object(json);
         values.clear();
-        for (const auto& [name, value] : json.items()) JsonForm<T>::read(value, values[name]);
+        for (const auto& [name, value] : json.items()) read_member(value, name, values[name]);
     }
     static Json schema() { return schema::map_of(JsonForm<T>::schema()); }
 };
@@ -320,7 +338,7 @@ struct JsonForm<T> {
     }
 
     static void read(const Json& json, T& object) {
-        if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
+        require_object(json);
         std::vector<std::string_view> known;
         read_members(json, object, known);
         require_known(json, known);

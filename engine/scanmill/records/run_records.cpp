@@ -287,7 +287,7 @@ Metric read_metric(SQLite::Statement& row, int first) {
     Metric metric{};
     std::string unit;
     read_row(row, first, metric.name, metric.value, unit);
-    metric.unit = unit_named(unit).value_or(Unit::number);
+    metric.unit = value_named<Unit>(unit).value_or(Unit::number);
     return metric;
 }
 

@@ -16,12 +16,12 @@ TEST(Unit, EveryUnit_HasANameThatNamesIt) {
         {ratio, "ratio"}, {seconds, "seconds"}, {number, "number"}, {boolean, "boolean"}};
     for (const auto& [unit, name] : names) {
         EXPECT_EQ(name_of(unit), name);
-        EXPECT_EQ(unit_named(name), unit) << name;
+        EXPECT_EQ(value_named<Unit>(name), unit) << name;
     }
 }
 
 TEST(Unit, UnknownName_IsNone) {
-    for (const char* name : {"", "mm", "Length", "metre"}) EXPECT_FALSE(unit_named(name)) << name;
+    for (const char* name : {"", "mm", "Length", "metre"}) EXPECT_FALSE(value_named<Unit>(name)) << name;
 }
 
 TEST(Metrics, InTheOrderTheyWereReported) {

@@ -33,10 +33,10 @@ TEST(ParameterType, EveryType_HasANameThatNamesIt) {
         {path, "path"},       {length, "length"},   {angle, "angle"},   {ratio, "ratio"}};
     for (const auto& [type, name] : names) {
         EXPECT_EQ(name_of(type), name);
-        EXPECT_EQ(parameter_type_named(name), type);
+        EXPECT_EQ(value_named<ParameterType>(name), type);
     }
-    EXPECT_FALSE(parameter_type_named("Length"));
-    EXPECT_FALSE(parameter_type_named(""));
+    EXPECT_FALSE(value_named<ParameterType>("Length"));
+    EXPECT_FALSE(value_named<ParameterType>(""));
 }
 
 TEST(ParameterParse, Boolean_IsTrueOrFalse) {
