@@ -192,7 +192,7 @@ private:
 
 std::optional<Comparison> Execution::judge(const SessionTask& task, std::int64_t run, int& code) const {
     try {
-        if (run == 0 && task.gate.empty()) return std::nullopt;
+        if (run == 0 && task.gate.rules.empty()) return std::nullopt;
         if (run == 0) throw Error("the gate was not judged, because the run is not recorded");
         std::optional<Comparison> comparison = verdict_of_batch(options_.session.output_folder, run);
         if (comparison) code = std::max(code, exit_code_of(*comparison, options_.strict));
@@ -220,7 +220,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
     handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
-    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.repeats);
+    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.gate.repeats);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
@@ -238,7 +238,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     if (is_batch && !report.interrupted) comparison = judge(task, number, code);
 
     if (events) {
-        if (comparison) events->judged(verdict_json(*comparison));
+        if (comparison) events->judged(verdict_event(*comparison));
         events->end(report);
         if (events->has_failed()) {
             print_stderr("error: not all events could be written\n");
@@ -353,10 +353,7 @@ int run_batch(const BatchOptions& options) {
     SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
     // A part of the batch is no night of it: its other cells are not missing.
     if (!options.choice.is_all()) task.name += ", in part";
-    if (const std::optional<Gate>& gate = checked.batch.gate) {
-        task.gate = to_json_text(*gate);
-        task.repeats = gate->repeats;
-    }
+    if (checked.batch.gate) task.gate = *checked.batch.gate;
     return execution.run(task, true);
 }
 

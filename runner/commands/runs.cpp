@@ -4,19 +4,16 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/value.hpp"
 #include "scanmill/records/run_records.hpp"
+#include "scanmill/report/documents.hpp"
 #include "scanmill/session/output_lock.hpp"
 
 namespace scanmill::runner {
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -45,30 +42,24 @@ bool is_baseline(const Folder& folder, const Acceptance& acceptance, const std::
     return held && held->id == acceptance.id;
 }
 
-Json to_json(const Folder& folder, const RunSummary& run) {
-    Json json{{"id", run.id},
-              {"started", run.started},
-              {"workflow", run.workflow},
-              {"outcome", outcome_of(folder, run)},
-              {"cells", run.cells},
-              {"doubtful", run.doubtful},
-              {"failed", run.failed},
-              {"ran", run.ran},
-              {"cached", run.cached},
-              {"seconds", run.seconds}};
-    if (was_killed(folder, run)) json["killed"] = true;
+ListedRun listed(const Folder& folder, const RunSummary& run) {
+    ListedRun listed{run, was_killed(folder, run), {}};
+    listed.summary.outcome = outcome_of(folder, run);
     for (const Acceptance& acceptance : folder.acceptances) {
         if (acceptance.run != run.id) continue;
-        Json entry{{"at", acceptance.at},
-                   {"who", acceptance.who},
-                   {"why", acceptance.why},
-                   {"baseline", is_baseline(folder, acceptance, run.workflow)}};
+        AcceptanceDocument document{
+            acceptance.at, acceptance.who, acceptance.why, is_baseline(folder, acceptance, run.workflow), {}};
         if (acceptance.revoked_at)
-            entry["revoked"] = {
-                {"at", *acceptance.revoked_at}, {"who", acceptance.revoked_by}, {"why", acceptance.revoked_why}};
-        json["accepted"].push_back(std::move(entry));
+            document.revoked = {*acceptance.revoked_at, acceptance.revoked_by, acceptance.revoked_why};
+        listed.accepted.push_back(std::move(document));
     }
-    return json;
+    return listed;
+}
+
+void print_document(const Json& members) {
+    Json json{{"scanmill", 1}};
+    json.update(members);
+    print_json(json);
 }
 
 /// "baseline, by ann: the new mesher", for each acceptance of the run; empty if there is none.
@@ -106,90 +97,13 @@ std::string names_text(const std::vector<std::string>& names) {
     return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
-Json to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
-    Json json = Json::object();
-    for (const auto& [name, value] : pairs) json[name] = value;
-    return json;
-}
-
-void add_failure(Json& entry, const FailureRecord& failure) {
-    if (failure.error.empty()) return;
-    entry["error"] = failure.error;
-    entry["cause"] = failure.cause;
-    if (failure.number != 0) entry["number"] = failure.number;
-}
-
-Json to_json(const Folder& folder, const RunDetails& run) {
-    Json json{
-        {"scanmill", 1}, {"run", to_json(folder, run.summary)}, {"cells", Json::array()}, {"steps", Json::array()}};
-    json["run"].update({{"file", run.start.file},
-                        {"arguments", run.start.arguments},
-                        {"seed", run.start.seed},
-                        {"threads", run.start.threads},
-                        {"version", run.start.version},
-                        {"jobs", run.start.jobs},
-                        {"machine", run.start.machine},
-                        {"libraries", run.start.libraries}});
-    if (!run.start.gate.empty()) json["run"]["gate"] = Json::parse(run.start.gate, nullptr, false);
-    const Variants variants = variants_of(run);
-    for (const CellRecord& cell : run.cells) {
-        Json entry{{"scan", cell.scan},       {"workflow", cell.workflow}, {"variant", cell.variant},
-                   {"outcome", cell.outcome}, {"seconds", cell.seconds},   {"steps", cell.nodes},
-                   {"outputs", Json::array()}};
-        if (!cell.doubts.empty()) entry["doubts"] = cell.doubts;
-        add_failure(entry, cell.failure);
-        if (!cell.truth.empty()) entry["truth"] = cell.truth;
-        for (const CostRecord& cost : cell.costs)
-            entry["costs"].push_back(
-                {{"seconds", cost.seconds}, {"cpu-seconds", cost.cpu_seconds}, {"peak-memory", cost.peak_memory}});
-        for (const OutputRecord& output : cell.outputs) {
-            Json file{{"file", output.file}, {"kind", output.kind}, {"outcome", output.outcome}};
-            if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
-            if (!output.moved_to.empty()) file["moved-to"] = output.moved_to;
-            file["properties"] = metrics_json(output.properties);
-            entry["outputs"].push_back(std::move(file));
-        }
-        json["cells"].push_back(std::move(entry));
-    }
-    for (const StepRecord& step : run.steps) {
-        Json entry{{"node", step.node},
-                   {"workflow", step.workflow},
-                   {"step", step.label},
-                   {"filter", step.filter},
-                   {"version", step.filter_version},
-                   {"build", step.build},
-                   {"scan", step.scan},
-                   {"variants", Json::array()},
-                   {"key", step.plan_key},
-                   {"origin", step.origin},
-                   {"why", step.why},
-                   {"outcome", step.outcome},
-                   {"seconds", step.seconds},
-                   {"cpu-seconds", step.cpu_seconds},
-                   {"peak-memory", step.peak_memory},
-                   {"threads", step.threads},
-                   {"attempts", step.attempts},
-                   {"authored", to_json(step.authored)},
-                   {"parameters", to_json(step.resolved)},
-                   {"metrics", metrics_json(step.metrics)},
-                   {"properties", metrics_json(step.properties)}};
-        if (const auto used = variants.find(step.node); used != variants.end()) entry["variants"] = used->second;
-        if (!step.measures.empty()) entry["measures"] = step.measures;
-        add_failure(entry, step.failure);
-        if (!step.log.empty()) entry["log"] = step.log;
-        if (!step.warnings.empty()) entry["warnings"] = step.warnings;
-        json["steps"].push_back(std::move(entry));
-    }
-    return json;
-}
-
 int list_runs(Folder& folder, bool json) {
     const std::vector<RunSummary> runs = folder.records.runs();
     if (folder.is_in_use && !runs.empty()) folder.running = runs.back().id;
     if (json) {
-        Json all{{"scanmill", 1}, {"runs", Json::array()}};
-        for (const RunSummary& run : runs) all["runs"].push_back(to_json(folder, run));
-        print_json(all);
+        RunsDocument document;
+        for (const RunSummary& run : runs) document.runs.push_back(listed(folder, run));
+        print_document(json_of(document));
         return done;
     }
     std::vector<std::string> headers{"run",    "started",  "workflow", "cells",   "doubtful",
@@ -219,7 +133,7 @@ int show_run(Folder& folder, std::int64_t id, bool json) {
     const RunDetails run = folder.records.run(id);
     if (folder.is_in_use && folder.records.runs().back().id == id) folder.running = id;
     if (json) {
-        print_json(to_json(folder, run));
+        print_document(json_of(ShownRunDocument{{listed(folder, run.summary), run.start}, run.cells, run.steps}));
         return done;
     }
     fmt::print("run       {} of {}, {}\nworkflow  {}\nversion   {}\nmachine   {}\nthreads   {}, seed {}\n", id,
@@ -235,19 +149,19 @@ int show_run(Folder& folder, std::int64_t id, bool json) {
     };
     Table cells({"scan", "variant", "outcome", "seconds"});
     for (const CellRecord& cell : run.cells)
-        cells.add({cell.scan, cell.variant, cell.outcome, fmt::format("{:.2f}", cell.seconds)});
+        cells.add({cell.scan, cell.variant, std::string(name_of(cell.outcome)), fmt::format("{:.2f}", cell.seconds)});
     cells.may_cut("scan");
     fmt::print("{}\n", cells.text(stdout_width()));
     Table steps({"scan", "step", "variants", "outcome", "seconds", "from", "why"});
     for (const StepRecord& step : run.steps)
-        steps.add({step.scan, step.label, variants_text(step), step.outcome, fmt::format("{:.2f}", step.seconds),
-                   step.origin, step.why});
+        steps.add({step.scan, step.label, variants_text(step), std::string(name_of(step.outcome)),
+                   fmt::format("{:.2f}", step.effort.seconds), std::string(name_of(step.origin)), step.why});
     steps.may_cut("scan");
     steps.may_cut("why");
     fmt::print("{}", steps.text(stdout_width()));
     std::map<std::pair<std::string, std::string>, std::vector<std::string>> failed;  // scan and error → variants
     for (const CellRecord& cell : run.cells)
-        if (!cell.failure.error.empty()) failed[{cell.scan, cell.failure.error}].push_back(cell.variant);
+        if (cell.failure) failed[{cell.scan, cell.failure.error}].push_back(cell.variant);
     for (const auto& [failure, names] : failed)
         fmt::print("\n{} [{}]: {}\n", printable_line(failure.first), printable_line(names_text(names)),
                    printable(failure.second));

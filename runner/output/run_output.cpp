@@ -11,8 +11,8 @@
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill::runner {
 
@@ -60,13 +60,21 @@ Json cell_json(const RunGraph& graph, const RunCell& cell) {
             {"variant", graph.variant(cell).name}};
 }
 
-/// Adds `error`, `cause` and, where there is one, `signal` or `exit-code`.
-void add_failure(Json& entry, const Failure& failure) {
-    if (!failure) return;
-    entry["error"] = with_option(failure.whole()).what();
-    entry["cause"] = name_of(failure.cause);
-    if (failure.cause == Cause::signal) entry["signal"] = failure.number;
-    if (failure.cause == Cause::exit) entry["exit-code"] = failure.number;
+/// The text of the failure with the option that helps.
+void add_option(FailureRecord& record, const Failure& failure) {
+    if (failure) record.error = with_option(failure.whole()).what();
+}
+
+StepRecord shown_step(const RunGraph& graph, const RunNode& node, const NodeReport& report) {
+    StepRecord step = step_record(graph, node, report, "");
+    add_option(step.failure, report.failure);
+    return step;
+}
+
+CellRecord shown_cell(const RunGraph& graph, const RunCell& cell, const CellReport& report) {
+    CellRecord record = cell_record(graph, cell, report);
+    add_option(record.failure, report.failure);
+    return record;
 }
 
 /// The file that could not be read, if that is why the cell failed: all cells of its scan that need it fail alike.
@@ -86,13 +94,6 @@ std::map<std::size_t, std::size_t> cells_by_row(const RunGraph& graph, const Run
         ++rows[row];
     }
     return rows;
-}
-
-Json to_json(const ParameterSet& parameters) {
-    Json json = Json::object();
-    for (const auto& [name, value] : parameters.values)
-        if (const std::string shown = text(value); !shown.empty()) json[name] = shown;
-    return json;
 }
 
 }  // namespace
@@ -216,98 +217,46 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
 }
 
 Json report_json(const RunGraph& graph, const RunReport& report) {
-    Json json{{"scanmill", 1},
-              {"workflow", workflow_name(*graph.plans.front())},
-              {"interrupted", report.interrupted},
-              {"steps", Json::array()},
-              {"cells", Json::array()}};
-    for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
-        const RunNode& node = graph.nodes[index];
-        const NodeReport& done = report.nodes[index];
-        Json entry{{"key", node.key},
-                   {"step", graph.label(node)},
-                   {"outcome", name_of(done.outcome)},
-                   {"origin", name_of(done.origin)},
-                   {"seconds", done.effort.seconds}};
-        if (!done.why.empty() && done.origin == Origin::ran) entry["why"] = done.why;
-        if (done.effort.peak_memory > 0) entry["peak-memory"] = done.effort.peak_memory;
-        if (node.step)
-            entry["filter"] = graph.step(node)->spec.name;
-        else
-            entry["file"] = node.leaf.file.string();
-        if (!done.resolved.values.empty()) entry["parameters"] = to_json(done.resolved);
-        if (!done.metrics.values.empty()) entry["metrics"] = metrics_json(done.metrics);
-        if (!done.properties.values.empty()) entry["properties"] = metrics_json(done.properties);
-        if (!done.warnings.empty()) entry["warnings"] = done.warnings;
-        add_failure(entry, done.failure);
-        if (!done.effort.log.empty()) entry["log"] = done.effort.log;
-        json["steps"].push_back(std::move(entry));
-    }
-    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
-        const CellReport& done = report.cells[cell];
-        Json entry = cell_json(graph, graph.cells[cell]);
-        entry.update({{"outcome", name_of(done.outcome)},
-                      {"seconds", done.seconds},
-                      {"steps", graph.cells[cell].nodes},
-                      {"outputs", Json::array()}});
-        if (!done.doubts.empty()) entry["doubts"] = done.doubts;
-        add_failure(entry, done.failure);
-        for (const OutputReport& output : done.outputs) {
-            Json file{{"file", output.file.string()},
-                      {"outcome", name_of(output.outcome)},
-                      {"kind", name_of(output.kind)},
-                      {"properties", metrics_json(output.properties)}};
-            if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
-            if (!output.warnings.empty()) file["warnings"] = output.warnings;
-            if (!output.moved_to.empty()) file["moved-to"] = output.moved_to.string();
-            if (!output.not_moved.empty()) file["not-moved"] = output.not_moved;
-            entry["outputs"].push_back(std::move(file));
-        }
-        json["cells"].push_back(std::move(entry));
-    }
+    RunDocument document{workflow_name(*graph.plans.front()), report.interrupted, {}, {}};
+    for (std::size_t index = 0; index < graph.nodes.size(); ++index)
+        document.steps.push_back(shown_step(graph, graph.nodes[index], report.nodes[index]));
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell)
+        document.cells.push_back(shown_cell(graph, graph.cells[cell], report.cells[cell]));
+    Json json{{"scanmill", 1}};
+    json.update(json_of(document));
     return json;
 }
 
-Json EventStream::event(const char* name) const {
-    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
-    return {{"event", name}, {"at", since.count()}};
-}
-
-Json EventStream::step_event(const char* name, const RunNode& node) const {
-    Json json = event(name);
-    json["node"] = graph_.index(node);
-    json["scan"] = graph_.scan_names[node.scan];
-    json["workflow"] = workflow_name(*graph_.plans[node.plan]);
+std::vector<std::string> EventStream::variants_of(const RunNode& node) const {
+    std::vector<std::string> variants;
     if (has_several_variants_)
         for (const std::size_t cell : names_.cells(graph_.index(node), node.scan))
-            json["variants"].push_back(graph_.variant(graph_.cells[cell]).name);
-    json["step"] = graph_.label(node);
-    return json;
+            variants.push_back(graph_.variant(graph_.cells[cell]).name);
+    return variants;
 }
 
-void EventStream::print(const Json& event) {
+StepName EventStream::name_of_step(const RunNode& node) const {
+    return {graph_.index(node), graph_.scan_names[node.scan], workflow_name(*graph_.plans[node.plan]),
+            graph_.label(node), variants_of(node)};
+}
+
+void EventStream::print(const char* name, const Json& members) {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
+    Json event{{"event", name}, {"at", since.count()}};
+    event.update(members);
+    const std::string line = text_of(event) + "\n";
     const std::scoped_lock one_at_a_time(mutex_);
-    const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     has_failed_ = std::fwrite(line.data(), 1, line.size(), stdout) < line.size() || has_failed_;
     has_failed_ = std::fflush(stdout) != 0 || has_failed_;
 }
 
 void EventStream::begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run) {
-    Json json{{"scanmill", 1}};
-    json.update(event("run-started"));
-    json["name"] = name;
-    if (run > 0) json["run"] = run;
-    json["jobs"] = jobs;
-    json["threads"] = threads;
-    json["steps"] = graph_.nodes.size();
-    json["cells"] = graph_.cells.size();
-    print(json);
+    print("run-started",
+          json_of(RunStartedEvent{1, name, run, jobs, threads, graph_.nodes.size(), graph_.cells.size()}));
 }
 
 void EventStream::node_started(const RunNode& node, std::size_t worker) {
-    Json json = step_event("step-started", node);
-    json["worker"] = worker;
-    print(json);
+    print("step-started", json_of(StepStartedEvent{name_of_step(node), worker}));
 }
 
 void EventStream::node_progress(const RunNode& node, double fraction) {
@@ -318,78 +267,37 @@ void EventStream::node_progress(const RunNode& node, double fraction) {
         if (percent <= last) return;
         last = percent;
     }
-    Json json = step_event("step-progress", node);
-    json["percent"] = percent;
-    print(json);
+    print("step-progress", json_of(StepProgressEvent{name_of_step(node), percent}));
 }
 
 void EventStream::node_warning(const RunNode& node, std::string_view text) {
-    Json json = step_event("warning", node);
-    json["text"] = text;
-    print(json);
+    print("warning", json_of(WarningEvent{name_of_step(node), std::string(text)}));
 }
 
 void EventStream::node_ended(const RunNode& node, const NodeReport& report) {
-    Json json = step_event("step-ended", node);
-    json["outcome"] = name_of(report.outcome);
-    json["origin"] = name_of(report.origin);
-    if (!report.why.empty()) json["why"] = report.why;
-    json["seconds"] = report.effort.seconds;
-    json["cpu-seconds"] = report.effort.cpu_seconds;
-    json["peak-memory"] = report.effort.peak_memory;
-    if (!report.metrics.values.empty()) json["metrics"] = metrics_json(report.metrics);
-    add_failure(json, report.failure);
-    if (!report.effort.log.empty()) json["log"] = report.effort.log;
-    print(json);
+    print("step-ended", json_of(StepEndedEvent{variants_of(node), shown_step(graph_, node, report)}));
 }
 
 void EventStream::output_written(const RunCell& cell, const OutputReport& report) {
-    Json json = event("output-written");
-    json["scan"] = graph_.scan_names[cell.scan];
-    json["file"] = report.file.string();
-    json["outcome"] = name_of(report.outcome);
-    if (!report.sha256.empty()) json.update({{"sha256", report.sha256}, {"bytes", report.bytes}});
-    json["properties"] = metrics_json(report.properties);
-    if (!report.warnings.empty()) json["warnings"] = report.warnings;
-    print(json);
+    print("output-written", json_of(OutputWrittenEvent{graph_.scan_names[cell.scan], output_record(report)}));
 }
 
 void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
-    Json json = event("cell-ended");
-    json["cell"] = graph_.index(cell);
-    json.update(cell_json(graph_, cell));
-    json["outcome"] = name_of(report.outcome);
-    json["seconds"] = report.seconds;
-    if (!report.doubts.empty()) json["doubts"] = report.doubts;
-    add_failure(json, report.failure);
-    for (const OutputReport& output : report.outputs) {
-        if (!output.moved_to.empty())
-            json["moved"].push_back({{"file", output.file.string()}, {"to", output.moved_to.string()}});
-        if (!output.not_moved.empty())
-            json["not-moved"].push_back({{"file", output.file.string()}, {"why", output.not_moved}});
-    }
-    print(json);
+    print("cell-ended", json_of(CellEndedEvent{graph_.index(cell), shown_cell(graph_, cell, report)}));
 }
 
 void EventStream::pass_started(unsigned pass, unsigned passes) {
-    Json json = event("pass-started");
-    json["pass"] = pass;
-    json["passes"] = passes;
-    print(json);
+    print("pass-started", json_of(PassStartedEvent{pass, passes}));
 }
 
-void EventStream::judged(const Json& verdict) {
-    Json json = event("verdict");
-    json.update(verdict);
-    print(json);
-}
+void EventStream::judged(const VerdictEvent& verdict) { print("verdict", json_of(verdict)); }
 
 void EventStream::end(const RunReport& report) {
-    Json json = event("run-ended");
-    json["interrupted"] = report.interrupted;
-    for (const Outcome outcome : {Outcome::ok, Outcome::doubtful, Outcome::failed, Outcome::skipped})
-        json[std::string(name_of(outcome))] = std::ranges::count(report.cells, outcome, &CellReport::outcome);
-    print(json);
+    const auto count = [&](Outcome outcome) {
+        return static_cast<std::size_t>(std::ranges::count(report.cells, outcome, &CellReport::outcome));
+    };
+    print("run-ended", json_of(RunEndedEvent{report.interrupted, count(Outcome::ok), count(Outcome::doubtful),
+                                             count(Outcome::failed), count(Outcome::skipped)}));
 }
 
 }  // namespace scanmill::runner

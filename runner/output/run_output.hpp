@@ -5,17 +5,16 @@
 #include <chrono>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "output/step_names.hpp"
 #include "scanmill/cache/prediction.hpp"
+#include "scanmill/compare/documents.hpp"
+#include "scanmill/report/documents.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill::runner {
-
-using Json = nlohmann::ordered_json;
 
 std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
@@ -39,8 +38,7 @@ public:
 
     /// `run`: its number in the records; 0: not recorded.
     void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
-    /// `verdict`: the members of the event, from verdict_json().
-    void judged(const Json& verdict);
+    void judged(const VerdictEvent& verdict);
     void end(const RunReport& report);
     /// Some events could not be written.
     bool has_failed() const { return has_failed_; }
@@ -54,9 +52,10 @@ public:
     void pass_started(unsigned pass, unsigned passes) override;
 
 private:
-    Json event(const char* name) const;
-    Json step_event(const char* name, const RunNode& node) const;
-    void print(const Json& event);
+    /// That use the node; none if all cells have one variant.
+    std::vector<std::string> variants_of(const RunNode& node) const;
+    StepName name_of_step(const RunNode& node) const;
+    void print(const char* name, const Json& members);
 
     const RunGraph& graph_;
     StepNames names_;

@@ -12,6 +12,7 @@
 #include "scanmill/base/execution.hpp"
 #include "scanmill/base/random.hpp"
 #include "scanmill/data/metrics.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
@@ -27,6 +28,10 @@ struct Doubt {
     std::string text;
     std::string port;  ///< empty: all outputs
 };
+constexpr auto fields(const Doubt*) {
+    using R = Doubt;
+    return std::tuple{field("text", &R::text), field("port", &R::port)};
+}
 
 class Context : public Execution {
 public:

@@ -47,8 +47,8 @@ void require_object(const Json& json) {
     if (!json.is_object()) throw JsonMismatch{{}, "is not an object"};
 }
 
-void require_size(const Json& list, std::size_t size) {
-    if (!list.is_array() || list.size() != size)
+void require_size(const Json& items, std::size_t size) {
+    if (!items.is_array() || items.size() != size)
         throw JsonMismatch{{}, fmt::format("is not a list of {} values", size)};
 }
 
@@ -93,10 +93,10 @@ Json names(std::span<const std::string_view> names) {
 }
 
 Json tuple_of(std::size_t size, Json item) {
-    Json list = list_of(std::move(item));
-    list["minItems"] = size;
-    list["maxItems"] = size;
-    return list;
+    Json items = list_of(std::move(item));
+    items["minItems"] = size;
+    items["maxItems"] = size;
+    return items;
 }
 
 Json object() {

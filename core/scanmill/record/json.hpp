@@ -84,14 +84,14 @@ Json document(std::string_view title, const Json& object);
 // Forms.
 
 void require_object(const Json& json);
-void require_size(const Json& list, std::size_t size);
+void require_size(const Json& items, std::size_t size);
 void require_known(const Json& object, const std::vector<std::string_view>& known);
 
 template <class T>
-void read_items(const Json& list, T* items) {
+void read_items(const Json& json, T* items) {
     std::size_t index = 0;
     try {
-        for (; index < list.size(); ++index) JsonForm<T>::read(list[index], items[index]);
+        for (; index < json.size(); ++index) JsonForm<T>::read(json[index], items[index]);
     } catch (JsonMismatch& mismatch) {
         throw std::move(mismatch).in(index);
     }
@@ -180,6 +180,18 @@ struct JsonForm<T> {
     static Json schema() { return schema::names(names_of(static_cast<const T*>(nullptr))); }
 };
 
+/// An enumeration without names: its number, for messages.
+template <class T>
+    requires(std::is_enum_v<T> && !Named<T>)
+struct JsonForm<T> {
+    static Json write(T value) { return static_cast<int>(value); }
+    static void read(const Json& json, T& value) {
+        int number = 0;
+        JsonForm<int>::read(json, number);
+        value = static_cast<T>(number);
+    }
+};
+
 template <class T>
 struct JsonForm<std::optional<T>> {
     static Json write(const std::optional<T>& value) { return value ? json_of(*value) : Json(); }
@@ -192,29 +204,29 @@ struct JsonForm<std::optional<T>> {
 
 template <class T, class Allocator>
 struct JsonForm<std::vector<T, Allocator>> {
-    static Json write(const std::vector<T, Allocator>& list) {
+    static Json write(const std::vector<T, Allocator>& items) {
         Json json = Json::array();
-        for (const T& item : list) json.push_back(json_of(item));
+        for (const T& item : items) json.push_back(json_of(item));
         return json;
     }
-    static void read(const Json& json, std::vector<T, Allocator>& list) {
+    static void read(const Json& json, std::vector<T, Allocator>& items) {
         if (!json.is_array()) throw JsonMismatch{{}, "is not a list"};
-        list = std::vector<T, Allocator>(json.size());
-        read_items<T>(json, list.data());
+        items = std::vector<T, Allocator>(json.size());
+        read_items<T>(json, items.data());
     }
     static Json schema() { return schema::list_of(JsonForm<T>::schema()); }
 };
 
 template <class T, std::size_t size>
 struct JsonForm<std::array<T, size>> {
-    static Json write(const std::array<T, size>& list) {
+    static Json write(const std::array<T, size>& items) {
         Json json = Json::array();
-        for (const T& item : list) json.push_back(json_of(item));
+        for (const T& item : items) json.push_back(json_of(item));
         return json;
     }
-    static void read(const Json& json, std::array<T, size>& list) {
+    static void read(const Json& json, std::array<T, size>& items) {
         require_size(json, size);
-        read_items<T>(json, list.data());
+        read_items<T>(json, items.data());
     }
     static Json schema() { return schema::tuple_of(size, JsonForm<T>::schema()); }
 };
@@ -401,6 +413,12 @@ private:
     static bool is_default(const auto& field, const Member& member) {
         if constexpr (requires { member.empty(); })
             return member.empty();
+        else if constexpr (requires { member.values.empty(); })
+            return member.values.empty();
+        else if constexpr (requires { member.has_value(); })
+            return !member.has_value();
+        else if constexpr (requires { std::variant_size<Member>::value; })
+            return false;
         else if constexpr (std::equality_comparable<Member>)
             return member == default_of(field);
         else
@@ -410,7 +428,7 @@ private:
     static void set_undefined(Member& member) {
         if constexpr (std::floating_point<Member>)
             member = std::numeric_limits<Member>::quiet_NaN();
-        else
+        else if constexpr (std::default_initializable<Member>)
             member = Member();
     }
 };

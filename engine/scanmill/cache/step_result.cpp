@@ -3,34 +3,21 @@
 
 #include <algorithm>
 
-#include "scanmill/base/error.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill {
 
-using nlohmann::json;
-
-void from_json(const json& value, Kind& kind) {
-    const auto name = value.get<std::string>();
-    const std::optional<Kind> found = kind_named(name);
-    if (!found) throw Error("unknown kind {}", name);
-    kind = *found;
-}
+static constexpr std::string_view subject = "the cached result of a step";
 
 const ResultOutput* StepResult::output(std::string_view port) const {
     const auto found = std::ranges::find(outputs, port, &ResultOutput::port);
     return found == outputs.end() ? nullptr : &*found;
 }
 
-std::string to_bytes(const json& value) {
-    std::string bytes;
-    json::to_cbor(value, bytes);
-    return bytes;
-}
+std::string to_bytes(const StepResult& result) { return cbor_of(json_of(result)); }
 
-StepResult step_result_from(std::string_view bytes) try {
-    return json::from_cbor(bytes).get<StepResult>();
-} catch (const json::exception&) {
-    throw Error("the cached result of a step is not one that Scanmill writes");
+StepResult step_result_from(std::string_view bytes) {
+    return from_json<StepResult>(json_from_cbor(bytes, subject), subject);
 }
 
 }  // namespace scanmill

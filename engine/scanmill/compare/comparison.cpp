@@ -179,7 +179,7 @@ public:
     CellJudge(const Gate& gate, const CellRecord& cell, const StepsByNode& steps) : gate_(gate), cell_(cell) {
         result_.workflow = cell.workflow;
         result_.variant = cell.variant;
-        result_.outcome = cell.outcome;
+        result_.outcome = name_of(cell.outcome);
         result_.seconds = cell.seconds;
         result_.passes = cell.costs;
         result_.values = values_of(cell, steps);
@@ -190,19 +190,20 @@ public:
     /// `accepted`: null if the accepted run does not have the cell.
     CellComparison judged(const CellRecord* accepted, const StepsByNode& accepted_steps,
                           const std::vector<CostRecord>& past) {
-        if (cell_.outcome == "failed") {
+        if (cell_.outcome == Outcome::failed) {
             result_.reasons.push_back(failure_text(cell_.failure));
-            if (accepted && accepted->outcome == "failed")
+            if (accepted && accepted->outcome == Outcome::failed)
                 result_.reasons.emplace_back("it failed in the accepted run, too");
             result_.verdict = Verdict::failed;
             return std::move(result_);
         }
-        if (cell_.outcome == "skipped") {
+        if (cell_.outcome == Outcome::skipped) {
             result_.reasons.emplace_back("it did not run");
             result_.verdict = Verdict::missing;
             return std::move(result_);
         }
-        const bool is_comparable = accepted && (accepted->outcome == "ok" || accepted->outcome == "doubtful");
+        const bool is_comparable =
+            accepted && (accepted->outcome == Outcome::ok || accepted->outcome == Outcome::doubtful);
         const std::vector<CellValue> before =
             is_comparable ? values_of(*accepted, accepted_steps) : std::vector<CellValue>();
         for (const GateRule& rule : gate_.rules)
@@ -215,7 +216,7 @@ public:
         std::ranges::stable_sort(result_.metrics, [](const MetricChange& a, const MetricChange& b) {
             if (a.effect != b.effect) return a.effect < b.effect;
             if (a.rule.empty() != b.rule.empty()) return b.rule.empty();
-            return std::abs(a.share()) > std::abs(b.share());
+            return std::abs(a.share) > std::abs(b.share);
         });
         decide(accepted, is_comparable);
         return std::move(result_);
@@ -284,15 +285,27 @@ private:
         return unit == Unit::length ? 1 : unit == Unit::area ? 2 : unit == Unit::volume ? 3 : 0;
     }
 
+    static double share_of(const std::optional<double>& accepted, const std::optional<double>& found) {
+        if (!accepted || !found) return infinite;
+        if (*accepted == *found) return 0;
+        const double share = (*found - *accepted) / std::abs(*accepted);
+        return std::isnan(share) ? infinite : share;
+    }
+
     /// In the unit of the new value.
     static MetricChange change_of(const CellValue* was, const CellValue* is) {
         const CellValue& either = is ? *is : *was;
-        MetricChange change{either.source, either.metric.name, either.metric.unit, either.lengths, {}, {}, {}};
+        MetricChange change;
+        change.source = either.source;
+        change.metric = either.metric.name;
+        change.unit = either.metric.unit;
+        change.lengths = either.lengths;
         if (is) change.found = is->metric.value;
         if (was) change.accepted = was->metric.value;
         if (is && was && is->lengths != was->lengths && are_comparable(*was, *is))
             for (int power = 0; power < power_of(either.metric.unit); ++power)
                 change.accepted = in_unit(*change.accepted, was->lengths, is->lengths);
+        change.share = share_of(change.accepted, change.found);
         return change;
     }
 
@@ -323,7 +336,7 @@ private:
             const auto found = std::ranges::find_if(cell.outputs, [&](const auto& each) { return name(each) == file; });
             return found == cell.outputs.end() ? nullptr : &*found;
         };
-        const auto is_written = [](const OutputRecord& output) { return output.outcome == "ok"; };
+        const auto is_written = [](const OutputRecord& output) { return output.outcome == Outcome::ok; };
         bool lacks_hash = false;
         for (const OutputRecord& is : cell_.outputs) {
             const OutputRecord* was = find(accepted, name(is));
@@ -347,7 +360,10 @@ private:
             const std::vector<double> before = costs_of(past, cost), now = costs_of(cell_.costs, cost);
             if (before.empty() || now.empty()) continue;
             const auto rule = std::ranges::find(gate_.rules, cost, &GateRule::metric);
-            CostChange change{std::string(cost), 0, 0, before.size(), now.size(), {}, {}, Effect::listed};
+            CostChange change;
+            change.cost = cost;
+            change.passes_before = before.size();
+            change.passes = now.size();
             const bool is_gated = rule != gate_.rules.end();
             const double tolerance = is_gated ? parse_cost_tolerance(rule->text).amount : infinite;
             const bool is_confirmed = cost != "seconds" || used_more_processor(past, tolerance);
@@ -357,6 +373,7 @@ private:
             const CostJudgement judgement = judge_costs(before, now, tolerance, kind);
             change.before = judgement.before;
             change.now = judgement.now;
+            change.share = judgement.now / judgement.before - 1;
             change.probability = judgement.probability;
             if (is_gated) change.rule = rule->text;
             if (judgement.is_worse) change.effect = Effect::regression;
@@ -387,7 +404,7 @@ private:
         } else if (!inapplicable_.empty()) {
             result_.verdict = Verdict::failed;
             result_.reasons = std::move(inapplicable_);
-        } else if (cell_.outcome == "doubtful") {
+        } else if (cell_.outcome == Outcome::doubtful) {
             result_.verdict = Verdict::doubtful;
             result_.reasons = cell_.doubts;
         } else if (!improvements_.empty()) {
@@ -395,8 +412,8 @@ private:
             result_.reasons = std::move(improvements_);
         } else if (accepted && !is_comparable) {
             result_.verdict = Verdict::improved;
-            result_.reasons.push_back(
-                fmt::format("it {} in the accepted run", accepted->outcome == "failed" ? "failed" : "did not run"));
+            result_.reasons.push_back(fmt::format("it {} in the accepted run",
+                                                  accepted->outcome == Outcome::failed ? "failed" : "did not run"));
         } else {
             result_.verdict = accepted ? Verdict::passed : Verdict::is_new;
         }
@@ -472,36 +489,19 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
     if (now.version != then.version)
         comparison.notes.push_back(fmt::format("Scanmill {} → {}", then.version, now.version));
     if (now.seed != then.seed) comparison.notes.push_back(fmt::format("the seed changed {} → {}", then.seed, now.seed));
-    if (then.gate.empty() ? !comparison.gate.rules.empty() : then.gate != now.gate)
+    if (then.gate != now.gate || then.repeats != now.repeats)
         comparison.notes.emplace_back("the gate is not that of the accepted run");
 }
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-    constexpr std::array<std::string_view, 7> names{"failed",   "missing", "regressed", "doubtful",
-                                                    "improved", "new",     "passed"};
-    return names[static_cast<std::size_t>(verdict)];
-}
-
-std::string_view name_of(Effect effect) {
-    constexpr std::array<std::string_view, 3> names{"regression", "improvement", "listed"};
-    return names[static_cast<std::size_t>(effect)];
-}
-
-double MetricChange::share() const {
-    if (!accepted || !found) return infinite;
-    if (*accepted == *found) return 0;
-    const double share = (*found - *accepted) / std::abs(*accepted);
-    return std::isnan(share) ? infinite : share;
-}
 
 Comparison compare(const RunDetails& run, const Baseline* baseline) {
     Comparison comparison;
     comparison.batch = run.start.workflow;
     comparison.file = run.start.file;
     comparison.run = facts_of(run);
-    if (!run.start.gate.empty()) comparison.gate = parse_gate_json(run.start.gate);
+    for (const auto& [metric, text] : run.start.gate) comparison.gate.rules.push_back({metric, text, {}});
+    comparison.gate.repeats = run.start.repeats;
     if (baseline) {
         comparison.accepted = facts_of(baseline->run);
         comparison.acceptance = baseline->acceptance;
@@ -540,7 +540,7 @@ Comparison compare(const RunDetails& run, const Baseline* baseline) {
 
 Effect RankedChange::effect() const { return metric ? metric->effect : output ? output->effect : cost->effect; }
 
-double RankedChange::share() const { return metric ? metric->share() : output ? infinite : cost->share(); }
+double RankedChange::share() const { return metric ? metric->share : output ? infinite : cost->share; }
 
 double RankedChange::confidence() const { return cost ? 1 - cost->probability.value_or(0.5) : 1; }
 

@@ -29,48 +29,76 @@ enum class Verdict {
     is_new,     ///< no accepted run has the cell
     passed
 };
+constexpr std::array<std::string_view, 7> names_of(const Verdict*) {
+    return {"failed", "missing", "regressed", "doubtful", "improved", "new", "passed"};
+}
 /// In the order of the enumeration.
 inline constexpr std::array<Verdict, 7> all_verdicts{Verdict::failed,   Verdict::missing,  Verdict::regressed,
                                                      Verdict::doubtful, Verdict::improved, Verdict::is_new,
                                                      Verdict::passed};
-/// "failed", …, "new", "passed".
-std::string_view name_of(Verdict verdict);
 
 /// What a change means for the gate. `listed`: nothing; it is within its rule, or no rule is for it.
 enum class Effect { regression, improvement, listed };
-std::string_view name_of(Effect effect);
+constexpr std::array<std::string_view, 3> names_of(const Effect*) { return {"regression", "improvement", "listed"}; }
 
 /// A number that differs between the runs, in this run's unit of lengths.
 struct MetricChange {
-    std::string source, metric;  ///< as in CellValue
+    std::string source, metric;
     Unit unit = Unit::number;
     LengthUnit lengths = LengthUnit::unknown;
-    std::optional<double> accepted, found;  ///< nothing: the run has no such value
-    std::string rule;                       ///< its text; empty: there is none
+    std::optional<double> accepted, found;
+    double share = 0;
+    std::string rule;
     Effect effect = Effect::listed;
-
-    /// The difference as a share of the accepted value; infinite if that is 0 or one is absent.
-    double share() const;
 };
+constexpr auto fields(const MetricChange*) {
+    using R = MetricChange;
+    return std::tuple{
+        field("source", &R::source, "A step, or an output's file."),
+        field("metric", &R::metric),
+        field("unit", &R::unit),
+        field("length-unit", &R::lengths),
+        field("accepted", &R::accepted, "null: the accepted run has no such value."),
+        field("found", &R::found, "null: this run has no such value."),
+        field("share", &R::share, "The difference as a share of the accepted value; null: infinite.").nullable(),
+        field("rule", &R::rule, "null: there is none.").nullable(),
+        field("effect", &R::effect)};
+}
 
 /// An output file whose bytes differ, or that only one run wrote.
 struct OutputChange {
-    std::string file;             ///< without its folder
-    std::string accepted, found;  ///< SHA-256; empty: not written
+    std::string file, accepted, found;
     Effect effect = Effect::listed;
 };
+constexpr auto fields(const OutputChange*) {
+    using R = OutputChange;
+    return std::tuple{field("file", &R::file, "Without its folder."),
+                      field("accepted", &R::accepted, "SHA-256; null: not written.").nullable(),
+                      field("found", &R::found, "SHA-256; null: not written.").nullable(), field("effect", &R::effect)};
+}
 
 /// Medians over passes: of this run, and of the earlier ones.
 struct CostChange {
-    std::string cost;  ///< `seconds`, `cpu-seconds` or `memory` (bytes)
-    double before = 0, now = 0;
+    std::string cost;
+    double before = 0, now = 0, share = 0;
     std::size_t passes_before = 0, passes = 0;
-    std::optional<double> probability;  ///< of the ranks if nothing changed; nothing: not computed
+    std::optional<double> probability;
     std::string rule;
     Effect effect = Effect::listed;
-
-    double share() const { return now / before - 1; }
 };
+constexpr auto fields(const CostChange*) {
+    using R = CostChange;
+    return std::tuple{
+        field("cost", &R::cost, "seconds, cpu-seconds or memory (in bytes)."),
+        field("before", &R::before, "The median of the earlier passes."),
+        field("now", &R::now, "The median of this run's passes."),
+        field("share", &R::share, "The difference as a share of the median before; null: infinite.").nullable(),
+        field("passes-before", &R::passes_before),
+        field("passes", &R::passes),
+        field("probability", &R::probability, "Of the ranks if nothing changed; null: not computed."),
+        field("rule", &R::rule, "null: there is none.").nullable(),
+        field("effect", &R::effect)};
+}
 
 struct CellComparison {
     std::string workflow, scan, variant;  ///< the scan from the batch's folder
@@ -87,6 +115,22 @@ struct CellComparison {
     double seconds = 0;
     std::string command;  ///< reproduces the cell in a shell; empty for cells that passed
 };
+constexpr auto fields(const CellComparison*) {
+    using R = CellComparison;
+    return std::tuple{field("workflow", &R::workflow),
+                      field("scan", &R::scan, "From the batch's folder."),
+                      field("variant", &R::variant),
+                      field("verdict", &R::verdict),
+                      field("reasons", &R::reasons),
+                      field("causes", &R::causes, "What differs in its files and steps."),
+                      field("seconds", &R::seconds),
+                      field("metrics", &R::metrics),
+                      field("outputs", &R::outputs),
+                      field("costs", &R::costs),
+                      field("moved", &R::moved, "Earlier outputs that were moved aside."),
+                      field("command", &R::command, "Reproduces the cell; null: it passed.").nullable(),
+                      field("values", &R::values, "Numbers by source and name; null: not finite.")};
+}
 
 /// What the comparison needs to know of a run.
 struct RunFacts {
@@ -95,6 +139,12 @@ struct RunFacts {
     unsigned threads = 0, jobs = 0;
     double seconds = 0;
 };
+constexpr auto fields(const RunFacts*) {
+    using R = RunFacts;
+    return std::tuple{field("id", &R::id),           field("started", &R::started), field("outcome", &R::outcome),
+                      field("version", &R::version), field("machine", &R::machine), field("threads", &R::threads),
+                      field("jobs", &R::jobs),       field("seconds", &R::seconds)};
+}
 
 struct Comparison {
     std::string batch, file;

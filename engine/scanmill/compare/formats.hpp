@@ -12,8 +12,6 @@ namespace scanmill {
 /// {"scanmill": 1, "report": {…}}: everything; schemas/output/report.schema.json describes it. Numbers are in the units
 /// of the records: radians, fractions, bytes, the cell's unit of lengths.
 nlohmann::ordered_json report_json(const Comparison& comparison);
-/// The verdict, the counts and the cells that did not pass, for the events of a batch.
-nlohmann::ordered_json verdict_json(const Comparison& comparison);
 
 /// JUnit XML, valid by the schemas of Ant and of Jenkins: a suite per workflow, a test case per cell with the scan as
 /// its name and the variant in its class. A regressed or missing cell is a failure, a failed one an error; with

@@ -1,146 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A comparison as JSON.
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "scanmill/compare/documents.hpp"
 #include "scanmill/compare/formats.hpp"
 
 namespace scanmill {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
-Json to_json(const RunFacts& run) {
-    return {{"id", run.id},           {"started", run.started}, {"outcome", run.outcome}, {"version", run.version},
-            {"machine", run.machine}, {"threads", run.threads}, {"jobs", run.jobs},       {"seconds", run.seconds}};
-}
-
-Json to_json(const MetricChange& change) {
-    return {{"source", change.source},
-            {"metric", change.metric},
-            {"unit", name_of(change.unit)},
-            {"length-unit", change.lengths == LengthUnit::unknown ? Json() : Json(symbol(change.lengths))},
-            {"accepted", number(change.accepted)},
-            {"found", number(change.found)},
-            {"share", number(change.share())},
-            {"rule", text_or_null(change.rule)},
-            {"effect", name_of(change.effect)}};
-}
-
-Json to_json(const OutputChange& change) {
-    return {{"file", change.file},
-            {"accepted", text_or_null(change.accepted)},
-            {"found", text_or_null(change.found)},
-            {"effect", name_of(change.effect)}};
-}
-
-Json to_json(const CostChange& change) {
-    return {{"cost", change.cost},
-            {"before", number(change.before)},
-            {"now", number(change.now)},
-            {"share", number(change.share())},
-            {"passes-before", change.passes_before},
-            {"passes", change.passes},
-            {"probability", number(change.probability)},
-            {"rule", text_or_null(change.rule)},
-            {"effect", name_of(change.effect)}};
-}
-
-Json to_json(const CellComparison& cell);
-
-template <class Changes>
-Json list_of(const Changes& changes) {
-    Json list = Json::array();
-    for (const auto& change : changes) list.push_back(to_json(change));
-    return list;
-}
-
-Json to_json(const CellComparison& cell) {
-    Json json{{"workflow", cell.workflow},
-              {"scan", cell.scan},
-              {"variant", cell.variant},
-              {"verdict", name_of(cell.verdict)},
-              {"reasons", cell.reasons},
-              {"causes", cell.causes},
-              {"seconds", cell.seconds},
-              {"metrics", list_of(cell.metrics)},
-              {"outputs", list_of(cell.outputs)},
-              {"costs", list_of(cell.costs)},
-              {"moved", cell.moved},
-              {"command", text_or_null(cell.command)},
-              {"values", Json::object()}};
-    for (const CellValue& value : cell.values) json["values"][value.full_name()] = number(value.metric.value);
-    return json;
-}
-
-Json counts_json(const Comparison& comparison) {
-    Json counts = Json::object();
-    for (const Verdict verdict : all_verdicts) counts[std::string(name_of(verdict))] = comparison.count(verdict);
+std::map<std::string, std::size_t> counts_of(const Comparison& comparison) {
+    std::map<std::string, std::size_t> counts;
+    for (const Verdict verdict : all_verdicts) counts.emplace(name_of(verdict), comparison.count(verdict));
     return counts;
 }
 
-Json accepted_json(const Comparison& comparison) {
-    if (!comparison.accepted) return {};
-    Json json = to_json(*comparison.accepted);
-    json["folder"] = text_or_null(comparison.accepted_folder);
-    const auto& acceptance = comparison.acceptance;
-    json["who"] = acceptance ? Json(acceptance->who) : Json();
-    json["why"] = acceptance ? Json(acceptance->why) : Json();
-    json["at"] = acceptance ? Json(acceptance->at) : Json();
-    return json;
+std::optional<AcceptedRun> accepted_of(const Comparison& comparison) {
+    if (!comparison.accepted) return std::nullopt;
+    AcceptedRun accepted{*comparison.accepted, comparison.accepted_folder, {}, {}, {}};
+    if (const auto& acceptance = comparison.acceptance) {
+        accepted.who = acceptance->who;
+        accepted.why = acceptance->why;
+        accepted.at = acceptance->at;
+    }
+    return accepted;
 }
 
 /// Where the cell, and the change in it, are in the report.
-Json place_of(const RankedChange& change, const Comparison& comparison) {
-    Json json{{"cell", change.cell - comparison.cells.data()}};
-    if (change.metric) json["metric"] = change.metric - change.cell->metrics.data();
-    if (change.output) json["output"] = change.output - change.cell->outputs.data();
-    if (change.cost) json["cost"] = change.cost - change.cell->costs.data();
-    return json;
+ChangePlace place_of(const RankedChange& change, const Comparison& comparison) {
+    const auto index = [](const auto* item, const auto& list) -> std::optional<std::size_t> {
+        if (!item) return std::nullopt;
+        return static_cast<std::size_t>(item - list.data());
+    };
+    return {*index(change.cell, comparison.cells), index(change.metric, change.cell->metrics),
+            index(change.output, change.cell->outputs), index(change.cost, change.cell->costs)};
 }
 
 }  // namespace
 
 Json report_json(const Comparison& comparison) {
-    Json rules = Json::object();
-    for (const GateRule& rule : comparison.gate.rules) rules[rule.metric] = rule.text;
-    Json report{{"batch", comparison.batch},
-                {"file", comparison.file},
-                {"verdict", name_of(comparison.verdict)},
-                {"tripped", comparison.tripped()},
-                {"run", to_json(comparison.run)},
-                {"accepted", accepted_json(comparison)},
-                {"gate", {{"rules", std::move(rules)}, {"repeats", comparison.gate.repeats}}},
-                {"counts", counts_json(comparison)},
-                {"filters", comparison.filters},
-                {"notes", comparison.notes},
-                {"cells", list_of(comparison.cells)},
-                {"changes", Json::array()}};
-    for (const RankedChange& change : what_changed(comparison))
-        report["changes"].push_back(place_of(change, comparison));
-    return {{"scanmill", 1}, {"report", std::move(report)}};
+    ReportDocument report{comparison.batch,
+                          comparison.file,
+                          comparison.verdict,
+                          comparison.tripped(),
+                          comparison.run,
+                          accepted_of(comparison),
+                          {},
+                          counts_of(comparison),
+                          comparison.filters,
+                          comparison.notes,
+                          comparison.cells,
+                          {}};
+    for (const GateRule& rule : comparison.gate.rules) report.gate.rules.emplace_back(rule.metric, rule.text);
+    report.gate.repeats = comparison.gate.repeats;
+    for (const RankedChange& change : what_changed(comparison)) report.changes.push_back(place_of(change, comparison));
+    return {{"scanmill", 1}, {"report", json_of(report)}};
 }
 
-Json verdict_json(const Comparison& comparison) {
-    Json json{{"verdict", name_of(comparison.verdict)},
-              {"tripped", comparison.tripped()},
-              {"run", comparison.run.id},
-              {"accepted", comparison.accepted ? Json(comparison.accepted->id) : Json()},
-              {"counts", counts_json(comparison)},
-              {"cells", Json::array()}};
+VerdictEvent verdict_event(const Comparison& comparison) {
+    VerdictEvent event{comparison.verdict, comparison.tripped(), comparison.run.id, {}, counts_of(comparison), {}};
+    if (comparison.accepted) event.accepted = comparison.accepted->id;
     for (const CellComparison& cell : comparison.cells)
         if (cell.verdict != Verdict::passed && cell.verdict != Verdict::is_new)
-            json["cells"].push_back({{"workflow", cell.workflow},
-                                     {"scan", cell.scan},
-                                     {"variant", cell.variant},
-                                     {"verdict", name_of(cell.verdict)},
-                                     {"reasons", cell.reasons}});
-    return json;
+            event.cells.push_back({cell.workflow, cell.scan, cell.variant, cell.verdict, cell.reasons});
+    return event;
 }
 
 }  // namespace scanmill

@@ -41,8 +41,8 @@ std::vector<std::string> row_of(const MetricChange& change) {
         difference = "new";
     else if (!change.found)
         difference = "gone";
-    else if (std::isfinite(change.share()) && change.unit != Unit::boolean)
-        difference = share_text(change.share());
+    else if (std::isfinite(change.share) && change.unit != Unit::boolean)
+        difference = share_text(change.share);
     else
         difference = "changed";
     return {change.metric, shown(change.accepted), shown(change.found), difference, change.rule};
@@ -60,7 +60,7 @@ std::vector<std::string> row_of(const OutputChange& change) {
 std::vector<std::string> row_of(const CostChange& change) {
     const std::string chance = change.probability ? fmt::format(", p {:.2g}", *change.probability) : "";
     return {change.cost, cost_text(change.cost, change.before), cost_text(change.cost, change.now),
-            share_text(change.share()) + chance, change.rule};
+            share_text(change.share) + chance, change.rule};
 }
 
 std::string effect_text(Effect effect) {

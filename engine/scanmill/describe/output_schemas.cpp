@@ -5,10 +5,11 @@
 #include <cassert>
 #include <utility>
 
-#include "scanmill/compare/comparison.hpp"
+#include "scanmill/compare/documents.hpp"
 #include "scanmill/describe/schema_parts.hpp"
 #include "scanmill/filter/parameter.hpp"
-#include "scanmill/worker/report.hpp"
+#include "scanmill/kinds/document.hpp"
+#include "scanmill/report/documents.hpp"
 
 namespace scanmill {
 
@@ -16,17 +17,7 @@ namespace {
 
 using namespace schema_parts;
 
-Json outcome() { return names(Outcome::ok, Outcome::skipped); }
-Json cause() { return names(Cause::refused, Cause::output); }
-Json seconds() { return number(); }
 Json bytes() { return described("In bytes.", count()); }
-/// Of a cell or a step.
-Json failure(const char* code) {
-    return object({{"error?", described("The sentence, its frames and the hint.", text())},
-                   {"cause?", cause()},
-                   {"signal?", count()},
-                   {code, count()}});
-}
 Json cell() { return object({{"scan", text()}, {"workflow", text()}, {"variant", text()}}); }
 
 /// FilterSpec, as manifests contain it.
@@ -200,192 +191,33 @@ Json dry_run_schema() {
              {"cells", list_of(joined(cell(), object({{"nodes", list_of(count())}, {"outputs", list_of(text())}})))}}));
 }
 
-/// Bytes and hash of a written file, and what became of the one of an earlier run.
-Json file_members() {
-    return object({{"sha256?", described("Of a written file.", text())},
-                   {"bytes?", count()},
-                   {"moved-to?", described("Where the file of an earlier run is, whose cell failed now.", text())}});
+template <class T>
+Json document_of(const char* title) {
+    return schema::document(title, JsonForm<T>::schema());
 }
 
-Json run_schema() {
-    const Json step = joined(object({{"key", text()},
-                                     {"step", text()},
-                                     {"outcome", outcome()},
-                                     {"origin", names(Origin::ran, Origin::same_inputs)},
-                                     {"seconds", seconds()},
-                                     {"why?", text()},
-                                     {"peak-memory?", bytes()},
-                                     {"filter?", text()},
-                                     {"file?", described("Of a step that reads one.", text())},
-                                     {"parameters?", map_of(text())},
-                                     {"metrics?", metrics()},
-                                     {"properties?", metrics()},
-                                     {"warnings?", list_of(text())},
-                                     {"log?", list_of(text())}}),
-                             failure("exit-code?"));
-    const Json file =
-        joined(object({{"file", text()},
-                       {"outcome", outcome()},
-                       {"kind", text()},
-                       {"properties", metrics()},
-                       {"warnings?", list_of(text())},
-                       {"not-moved?", described("Why the file of an earlier run is still there.", text())}}),
-               file_members());
-    const Json of_cell = joined(joined(cell(), object({{"outcome", outcome()},
-                                                       {"seconds", seconds()},
-                                                       {"steps", list_of(count())},
-                                                       {"outputs", list_of(file)},
-                                                       {"doubts?", list_of(text())}})),
-                                failure("exit-code?"));
-    return document(
-        "scanmill run --json",
-        object({{"workflow", text()}, {"interrupted", flag()}, {"steps", list_of(step)}, {"cells", list_of(of_cell)}}));
-}
-
-Json gate() {
-    return object({{"rules", described("By metric.", map_of(text()))},
-                   {"repeats", described("How often a run measures its costs.", count())}});
-}
-
-Json or_null(Json schema) {
-    schema["type"] = Json::array({schema["type"], "null"});
-    return schema;
-}
-Json count_or_null() { return or_null(count()); }
-Json number_or_null() { return described("null: there is none, or it is infinite.", or_null(number())); }
-Json verdict() { return names(Verdict::failed, Verdict::passed); }
-Json effect() { return names(Effect::regression, Effect::listed); }
-
-/// The verdict of a run, with the number of cells of every verdict.
-Json verdict_of_run() {
-    Json counts = object({});
-    for (const Verdict each : all_verdicts) {
-        counts["properties"][std::string(name_of(each))] = count();
-        counts["required"].push_back(name_of(each));
-    }
-    return object({{"verdict", verdict()},
-                   {"tripped", described("A cell regressed or is missing.", flag())},
-                   {"counts", std::move(counts)}});
-}
-
-/// A cell with its verdict and the sentences that give reasons.
-Json judged_cell() { return joined(cell(), object({{"verdict", verdict()}, {"reasons", list_of(text())}})); }
+Json run_schema() { return document_of<RunDocument>("scanmill run --json"); }
+Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR --json"); }
+Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID --json"); }
 
 Json report_schema() {
-    const Json run = object({{"id", count()},
-                             {"started", text()},
-                             {"outcome", text()},
-                             {"version", text()},
-                             {"machine", text()},
-                             {"threads", count()},
-                             {"jobs", count()},
-                             {"seconds", seconds()}});
-    Json accepted = joined(run, object({{"folder", described("null: the run's own.", or_null(text()))},
-                                        {"who", or_null(text())},
-                                        {"why", or_null(text())},
-                                        {"at", described("null: it was not accepted.", or_null(text()))}}));
-    accepted["type"] = Json::array({"object", "null"});
-    const Json metric =
-        object({{"source", described("A step, or an output's file.", text())},
-                {"metric", text()},
-                {"unit", unit()},
-                {"length-unit", length_unit_or_null()},
-                {"accepted", number_or_null()},
-                {"found", number_or_null()},
-                {"share", described("The difference as a share of the accepted value.", number_or_null())},
-                {"rule", described("null: there is none.", or_null(text()))},
-                {"effect", effect()}});
-    const Json output = object({{"file", text()},
-                                {"accepted", described("SHA-256; null: not written.", or_null(text()))},
-                                {"found", described("SHA-256; null: not written.", or_null(text()))},
-                                {"effect", effect()}});
-    const Json cost = object({{"cost", {{"enum", {"seconds", "cpu-seconds", "memory"}}}},
-                              {"before", described("The median of the earlier passes.", number_or_null())},
-                              {"now", described("The median of this run's passes.", number_or_null())},
-                              {"share", number_or_null()},
-                              {"passes-before", count()},
-                              {"passes", count()},
-                              {"probability", described("Of the ranks, if nothing changed.", number_or_null())},
-                              {"rule", or_null(text())},
-                              {"effect", effect()}});
-    const Json of_cell =
-        joined(judged_cell(), object({{"causes", described("What differs in its files and steps.", list_of(text()))},
-                                      {"seconds", seconds()},
-                                      {"metrics", list_of(metric)},
-                                      {"outputs", list_of(output)},
-                                      {"costs", list_of(cost)},
-                                      {"moved", described("Earlier outputs that were moved aside.", list_of(text()))},
-                                      {"command", described("Reproduces the cell; null: it passed.", or_null(text()))},
-                                      {"values", metrics()}}));
-    const Json change = object({{"cell", count()}, {"metric?", count()}, {"output?", count()}, {"cost?", count()}});
-    const Json report =
-        joined(object({{"batch", text()},
-                       {"file", text()},
-                       {"run", run},
-                       {"accepted", described("null: no run was accepted.", accepted)},
-                       {"gate", gate()},
-                       {"filters", list_of(text())},
-                       {"notes", list_of(text())},
-                       {"cells", list_of(of_cell)},
-                       {"changes", described("Indices into the cells and their lists: the most important change first.",
-                                             list_of(change))}}),
-               verdict_of_run());
-    return document("scanmill report DIR --json", object({{"report", report}}));
+    Json report = schema::object();
+    schema::add(report, "report", JsonForm<ReportDocument>::schema());
+    return schema::document("scanmill report DIR --json", report);
 }
 
 /// One line of a batch: `event` decides on the members.
 Json batch_event_schema() {
-    const Json about_step =
-        object({{"node", described("The step's number, from 0.", count())},
-                {"scan", text()},
-                {"workflow", text()},
-                {"variants?", described("That use it; absent if there is only one.", list_of(text()))},
-                {"step", text()}});
-    const std::pair<const char*, Json> events[] = {
-        {"run-started", object({{"scanmill", {{"const", 1}}},
-                                {"name", text()},
-                                {"run?", described("Its number in the records.", count())},
-                                {"jobs", count()},
-                                {"threads", count()},
-                                {"steps", count()},
-                                {"cells", count()}})},
-        {"step-started", joined(about_step, object({{"worker", count()}}))},
-        {"step-progress", joined(about_step, object({{"percent", count()}}))},
-        {"warning", joined(about_step, object({{"text", text()}}))},
-        {"step-ended", joined(joined(about_step, object({{"outcome", outcome()},
-                                                         {"origin", names(Origin::ran, Origin::same_inputs)},
-                                                         {"why?", text()},
-                                                         {"seconds", seconds()},
-                                                         {"cpu-seconds", seconds()},
-                                                         {"peak-memory", bytes()},
-                                                         {"metrics?", metrics()},
-                                                         {"log?", list_of(text())}})),
-                              failure("exit-code?"))},
-        {"output-written", object({{"scan", text()},
-                                   {"file", text()},
-                                   {"outcome", outcome()},
-                                   {"sha256?", text()},
-                                   {"bytes?", count()},
-                                   {"properties", metrics()},
-                                   {"warnings?", list_of(text())}})},
-        {"cell-ended",
-         joined(joined(cell(), object({{"cell", described("Its number, from 0.", count())},
-                                       {"outcome", outcome()},
-                                       {"seconds", seconds()},
-                                       {"doubts?", list_of(text())},
-                                       {"moved?", described("Files of an earlier run.",
-                                                            list_of(object({{"file", text()}, {"to", text()}})))},
-                                       {"not-moved?", list_of(object({{"file", text()}, {"why", text()}}))}})),
-                failure("exit-code?"))},
-        {"pass-started",
-         described("Steps run again for their costs.", object({{"pass", count()}, {"passes", count()}}))},
-        {"verdict", joined(object({{"run", count()}, {"accepted", count_or_null()}, {"cells", list_of(judged_cell())}}),
-                           verdict_of_run())},
-        {"run-ended", object({{"interrupted", flag()},
-                              {"ok", count()},
-                              {"doubtful", count()},
-                              {"failed", count()},
-                              {"skipped", count()}})}};
+    const std::pair<const char*, Json> events[] = {{"run-started", JsonForm<RunStartedEvent>::schema()},
+                                                   {"step-started", JsonForm<StepStartedEvent>::schema()},
+                                                   {"step-progress", JsonForm<StepProgressEvent>::schema()},
+                                                   {"warning", JsonForm<WarningEvent>::schema()},
+                                                   {"step-ended", JsonForm<StepEndedEvent>::schema()},
+                                                   {"output-written", JsonForm<OutputWrittenEvent>::schema()},
+                                                   {"cell-ended", JsonForm<CellEndedEvent>::schema()},
+                                                   {"pass-started", JsonForm<PassStartedEvent>::schema()},
+                                                   {"verdict", JsonForm<VerdictEvent>::schema()},
+                                                   {"run-ended", JsonForm<RunEndedEvent>::schema()}};
     Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
                 {"title", "One line of scanmill batch --json"},
                 {"type", "object"},
@@ -399,82 +231,6 @@ Json batch_event_schema() {
         schema["allOf"].push_back({{"if", {{"properties", {{"event", {{"const", name}}}}}}}, {"then", event}});
     }
     return schema;
-}
-
-Json run_summary() {
-    const Json acceptance = object({{"at", text()},
-                                    {"who", text()},
-                                    {"why", text()},
-                                    {"baseline", described("Later runs are compared with this one.", flag())},
-                                    {"revoked?", object({{"at", text()}, {"who", text()}, {"why", text()}})}});
-    return object({{"id", count()},
-                   {"started", text()},
-                   {"workflow", text()},
-                   {"outcome", {{"enum", {"ok", "doubtful", "failed", "interrupted", "running"}}}},
-                   {"killed?", described("It has no end.", flag())},
-                   {"accepted?", list_of(acceptance)},
-                   {"cells", count()},
-                   {"doubtful", count()},
-                   {"failed", count()},
-                   {"ran", described("Steps that were computed.", count())},
-                   {"cached", count()},
-                   {"seconds", seconds()}});
-}
-
-Json runs_schema() { return document("scanmill runs DIR --json", object({{"runs", list_of(run_summary())}})); }
-
-Json runs_show_schema() {
-    const Json run = joined(run_summary(), object({{"file", text()},
-                                                   {"arguments", list_of(text())},
-                                                   {"seed", count()},
-                                                   {"threads", count()},
-                                                   {"version", text()},
-                                                   {"jobs", count()},
-                                                   {"machine", text()},
-                                                   {"libraries", text()},
-                                                   {"gate?", gate()}}));
-    const Json failed = object(
-        {{"error?", text()}, {"cause?", cause()}, {"number?", described("Of the signal, or the exit code.", count())}});
-    const Json file =
-        joined(object({{"file", text()}, {"kind", text()}, {"outcome", outcome()}, {"properties", metrics()}}),
-               file_members());
-    const Json pass = object({{"seconds", seconds()}, {"cpu-seconds", seconds()}, {"peak-memory", bytes()}});
-    const Json of_cell = joined(
-        joined(cell(), object({{"outcome", outcome()},
-                               {"seconds", seconds()},
-                               {"steps", list_of(count())},
-                               {"outputs", list_of(file)},
-                               {"doubts?", list_of(text())},
-                               {"truth?", text()},
-                               {"costs?", described("One per pass in which all of its steps ran.", list_of(pass))}})),
-        failed);
-    const Json step = joined(object({{"node", count()},
-                                     {"workflow", text()},
-                                     {"step", text()},
-                                     {"filter", text()},
-                                     {"version", count()},
-                                     {"build", text()},
-                                     {"scan", text()},
-                                     {"variants", described("That use it.", list_of(text()))},
-                                     {"measures?", described("What it measures by the cell's truth.", text())},
-                                     {"key", text()},
-                                     {"origin", text()},
-                                     {"why", text()},
-                                     {"outcome", outcome()},
-                                     {"seconds", seconds()},
-                                     {"cpu-seconds", seconds()},
-                                     {"peak-memory", bytes()},
-                                     {"threads", count()},
-                                     {"attempts", count()},
-                                     {"authored", map_of(text())},
-                                     {"parameters", map_of(text())},
-                                     {"metrics", metrics()},
-                                     {"properties", metrics()},
-                                     {"log?", list_of(text())},
-                                     {"warnings?", list_of(text())}}),
-                             failed);
-    return document("scanmill runs DIR show ID --json",
-                    object({{"run", run}, {"cells", list_of(of_cell)}, {"steps", list_of(step)}}));
 }
 
 constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", list_schema},

@@ -8,7 +8,6 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/quantity.hpp"
-#include "scanmill/kinds/document.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
@@ -108,32 +107,6 @@ Tolerance parse_cost_tolerance(std::string_view text) {
     const Tolerance tolerance = parse_tolerance(text, Unit::number, LengthUnit::unknown, std::nan(""));
     if (tolerance.amount <= 0) throw Error("{} leaves no room for noise; {}", quote(text), expected);
     return tolerance;
-}
-
-std::string to_json_text(const Gate& gate) {
-    Json rules = Json::object();
-    for (const GateRule& rule : gate.rules) rules[rule.metric] = rule.text;
-    return Json{{"rules", std::move(rules)}, {"repeats", gate.repeats}}.dump(-1, ' ', false,
-                                                                             Json::error_handler_t::replace);
-}
-
-Gate parse_gate_json(std::string_view text) {
-    const Json document = parse_document(text);
-    if (!document.is_object()) throw Error("the recorded gate is not an object");
-    require_keys(document, "the recorded gate", {"rules", "repeats"});
-    Gate gate;
-    const Json& rules = member(document, "rules");
-    if (!rules.is_object()) throw Error("the recorded gate: 'rules' is not an object");
-    for (const auto& [metric, rule] : rules.items()) {
-        if (!rule.is_string()) throw Error("the recorded gate: the rule '{}' is not a text", metric);
-        gate.rules.push_back({metric, rule.get<std::string>(), {}});
-    }
-    const Json& repeats = member(document, "repeats");
-    const std::uint64_t count = repeats.is_number_unsigned() ? repeats.get<std::uint64_t>() : 0;
-    if (count < 1 || count > std::numeric_limits<unsigned>::max())
-        throw Error("the recorded gate: 'repeats' is not a number of passes");
-    gate.repeats = static_cast<unsigned>(count);
-    return gate;
 }
 
 }  // namespace scanmill

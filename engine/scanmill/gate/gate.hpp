@@ -58,9 +58,4 @@ bool is_cost(std::string_view metric);
 /// Of a rule for a cost. Throws Error for everything but a positive share with a plus sign: `+20 %`.
 Tolerance parse_cost_tolerance(std::string_view text);
 
-/// For the records: {"rules": {"hausdorff": "+1 %"}, "repeats": 3}.
-std::string to_json_text(const Gate& gate);
-/// Throws Error for a text that to_json_text() did not write.
-Gate parse_gate_json(std::string_view text);
-
 }  // namespace scanmill

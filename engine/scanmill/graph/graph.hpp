@@ -19,6 +19,7 @@
 #include "scanmill/data/transform.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "scanmill/plugin/library.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
@@ -67,6 +68,10 @@ struct ParameterFile {
     std::filesystem::path path;
     std::string content;  ///< hash of its bytes at planning time
 };
+constexpr auto fields(const ParameterFile*) {
+    using R = ParameterFile;
+    return std::tuple{field("path", &R::path), field("content", &R::content)};
+}
 
 /// A file to read.
 struct LeafSource {
@@ -80,6 +85,14 @@ struct LeafSource {
     bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key, as the values are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
 };
+constexpr auto fields(const LeafSource*) {
+    using R = LeafSource;
+    return std::tuple{field("file", &R::file),       field("content", &R::content),
+                      field("kind", &R::kind),       field("unit", &R::unit),
+                      field("frame", &R::frame),     field("pose", &R::pose),
+                      field("invalid", &R::invalid), field("is-streamed", &R::is_streamed),
+                      field("also", &R::also)};
+}
 
 /// Declared unit, frame, pose and rule for invalid rows as (name, text).
 std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& leaf);

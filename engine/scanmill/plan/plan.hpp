@@ -9,6 +9,7 @@
 
 #include "scanmill/plan/expand.hpp"
 #include "scanmill/plugin/library.hpp"
+#include "scanmill/record/fields.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
 namespace scanmill {
@@ -36,6 +37,11 @@ struct PlannedExpectation {
     ParameterValue low, high;
     std::string text;  ///< "genus: < 2", for messages
 };
+constexpr auto fields(const PlannedExpectation*) {
+    using R = PlannedExpectation;
+    return std::tuple{field("name", &R::name), field("relation", &R::relation), field("unit", &R::unit),
+                      field("low", &R::low),   field("high", &R::high),         field("text", &R::text)};
+}
 
 struct PlannedStep {
     std::string label;  ///< the id, else the filter's name

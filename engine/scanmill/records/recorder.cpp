@@ -9,21 +9,9 @@ namespace scanmill {
 
 namespace {
 
-std::vector<std::pair<std::string, std::string>> texts_of(const ParameterSet& parameters) {
-    std::vector<std::pair<std::string, std::string>> texts;
-    for (const auto& [name, value] : parameters.values)
-        if (std::string shown = text(value); !shown.empty()) texts.emplace_back(name, std::move(shown));
-    return texts;
-}
-
-FailureRecord record_of(const Failure& failure) {
-    return {std::string(name_of(failure.cause)), failure.number, failure ? failure.whole().what() : ""};
-}
-
 std::optional<CostRecord> cost_of(const NodeReport& report) {
     if (report.outcome != Outcome::ok || report.origin != Origin::ran) return std::nullopt;
-    return CostRecord{report.effort.seconds, report.effort.cpu_seconds,
-                      static_cast<std::int64_t>(report.effort.peak_memory)};
+    return CostRecord{report.effort.seconds, report.effort.cpu_seconds, report.effort.peak_memory};
 }
 
 /// Empty unless all nodes of the cell ran.
@@ -57,57 +45,15 @@ Recorder::Recorder(std::filesystem::path file, RunStart start, FilterLibrary& li
 }
 
 void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
-    StepRecord step;
-    step.node = graph_.index(node);
-    step.workflow = workflow_name(*graph_.plans[node.plan]);
-    step.scan = graph_.scan_names[node.scan];
-    step.plan_key = node.key;
-    step.label = graph_.label(node);
-    if (const PlannedStep* planned = graph_.step(node)) {
-        step.filter = planned->spec.name;
-        step.filter_version = planned->spec.version;
-        step.build = library_.build_id(planned->spec.name);
-        step.authored = texts_of(planned->parameters);
-        step.measures = planned->measures;
-    } else {
-        step.authored = declared_of(node.leaf);
-    }
-    step.origin = name_of(report.origin);
-    step.why = report.why;
-    step.outcome = name_of(report.outcome);
-    step.failure = record_of(report.failure);
-    step.seconds = report.effort.seconds;
-    step.cpu_seconds = report.effort.cpu_seconds;
-    step.peak_memory = static_cast<std::int64_t>(report.effort.peak_memory);
-    step.threads = report.effort.threads;
-    step.attempts = report.attempts;
-    step.log = report.effort.log;
-    step.resolved = texts_of(report.resolved);
-    step.metrics = report.metrics;
-    step.properties = report.properties;
-    step.warnings = report.warnings;
-    node_costs_[step.node] = cost_of(report);
-    steps_.push_back(std::move(step));
+    const PlannedStep* planned = graph_.step(node);
+    steps_.push_back(step_record(graph_, node, report, planned ? library_.build_id(planned->spec.name) : ""));
+    node_costs_[steps_.back().node] = cost_of(report);
     flush_when_due();
 }
 
 void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
-    CellRecord record;
-    record.workflow = graph_.workflow(cell);
-    record.scan = graph_.scan_names[cell.scan];
-    record.variant = graph_.variant(cell).name;
-    record.outcome = name_of(report.outcome);
-    record.failure = record_of(report.failure);
-    record.seconds = report.seconds;
-    record.nodes = cell.nodes;
-    record.doubts = report.doubts;
-    for (const OutputReport& output : report.outputs)
-        record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
-                                  std::string(name_of(output.outcome)), output.properties, output.sha256,
-                                  static_cast<std::int64_t>(output.bytes), output.moved_to.string()});
-    record.truth = cell.truth.string();
-    if (measures_costs_) record.costs = cost_of(cell, node_costs_);
-    cells_.push_back(std::move(record));
+    cells_.push_back(cell_record(graph_, cell, report));
+    if (measures_costs_) cells_.back().costs = cost_of(cell, node_costs_);
     flush_when_due();
 }
 

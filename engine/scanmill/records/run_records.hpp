@@ -3,7 +3,8 @@
 /// The history of runs: one SQLite file per output folder, to which every run appends.
 ///
 /// Rows are never changed or removed. A run without an end was killed. The file may be on a network file system
-/// (rollback journal), and any SQLite program can read it; its tables are in run_records.cpp. NaN is stored as NULL.
+/// (rollback journal), and any SQLite program can read it. Its tables follow from the fields of the records
+/// (report/run_report.hpp, detail/table.hpp), so a Scanmill with other fields has another layout, and refuses the file.
 
 #include <filesystem>
 #include <memory>
@@ -11,86 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/data/metrics.hpp"
+#include "scanmill/report/run_report.hpp"
 
 namespace scanmill {
-
-struct RunStart {
-    std::string workflow, file;  ///< name and file of the workflow or the batch
-    std::vector<std::string> arguments;  ///< of the command
-    std::uint64_t seed = 0;
-    unsigned threads = 1;  ///< inside a filter
-    unsigned jobs = 0;     ///< worker processes; 0: none
-    std::string version, machine, libraries;
-    std::string gate{};  ///< to_json_text() of the batch's gate; empty: this run is not of a batch, or it has no gate
-};
-
-struct FailureRecord {
-    std::string cause;  ///< empty: none
-    int number = 0;  ///< signal or exit code
-    std::string error;  ///< whole text with frames and hint
-};
-
-struct StepRecord {
-    std::size_t node = 0;  ///< index into the run's graph
-    std::string workflow, label, filter, scan, plan_key, build;
-    int filter_version = 0;
-    std::string origin, why, outcome;
-    FailureRecord failure;
-    double seconds = 0, cpu_seconds = 0;
-    std::int64_t peak_memory = 0;  ///< bytes; 0: not known
-    unsigned threads = 0, attempts = 0;
-    std::vector<std::string> log;  ///< the last lines that it wrote to standard output and error
-    std::vector<std::pair<std::string, std::string>> authored, resolved;  ///< parameters, as text
-    Metrics metrics, properties;
-    std::vector<std::string> warnings;
-    std::string measures;  ///< what it measures by the cell's truth, as "surface"; empty: it measures nothing
-};
-
-struct OutputRecord {
-    std::string file, kind, outcome;
-    Metrics properties;
-    std::string sha256{};  ///< of the file's bytes; empty: not written
-    std::int64_t bytes = 0;  ///< of the file
-    std::string moved_to{};  ///< where the file of an earlier run was moved when this cell failed; empty: nowhere
-};
-
-/// What one pass over a cell cost, all of whose steps ran in it.
-struct CostRecord {
-    double seconds = 0, cpu_seconds = 0;  ///< sums over its steps
-    std::int64_t peak_memory = 0;  ///< bytes, the largest of its steps
-};
-
-struct CellRecord {
-    std::string workflow, scan, variant, outcome;
-    FailureRecord failure;
-    double seconds = 0;
-    std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
-    std::vector<OutputRecord> outputs;
-    std::vector<std::string> doubts;
-    std::string truth{};  ///< the file; empty: none
-    std::vector<CostRecord> costs{};  ///< one per pass; empty if a step came from the cache or failed
-};
-
-struct RunSummary {
-    std::int64_t id = 0;
-    std::string started, workflow;
-    std::optional<std::string> outcome;  ///< nothing: the run was killed
-    std::size_t cells = 0, doubtful = 0, failed = 0, ran = 0, cached = 0;
-    double seconds = 0;
-};
-
-struct RunDetails {
-    RunSummary summary;
-    RunStart start;
-    std::vector<CellRecord> cells;
-    std::vector<StepRecord> steps;
-};
 
 /// A run was accepted as the baseline of its batch.
 struct Acceptance {
     std::int64_t id = 0, run = 0;
-    std::string at, who, why;
+    std::string batch, at, who, why;
     std::optional<std::string> revoked_at;
     std::string revoked_by, revoked_why;
 };
@@ -107,7 +36,7 @@ struct PastStep {
     std::uint64_t seed = 0;
     std::string filter, build, plan_key;
     int filter_version = 0;
-    std::vector<std::pair<std::string, std::string>> authored;
+    Texts authored;
     bool done = true;
 };
 
@@ -116,11 +45,11 @@ inline constexpr const char* records_file = "scanmill.sqlite";
 
 class RunRecords {
 public:
-    /// Opens the records for appending, or creates them. Throws Error: not such a file, one of a newer Scanmill, or an
-    /// unwritable folder.
+    /// Opens the records for appending, or creates them. Throws Error for a file of another layout, one that is not a
+    /// database, and an unwritable folder.
     static RunRecords append_to(const std::filesystem::path& file);
-    /// Opens records for reading; tables of an older version are migrated first, in memory if the file cannot be
-    /// written. Of the functions below, those that are not const need append_to().
+    /// Opens records for reading. Functions below that are not const need append_to(). Throws Error as append_to()
+    /// does.
     static RunRecords read(const std::filesystem::path& file);
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();
@@ -161,10 +90,8 @@ public:
 
 private:
     struct Database;
-    static std::unique_ptr<Database> open_to_read(const std::filesystem::path& file);
     std::string now() const;
     std::vector<RunSummary> summaries(std::optional<std::int64_t> id) const;
-    std::vector<Acceptance> acceptances(const std::string& condition, const std::string& key) const;
     void insert(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
     explicit RunRecords(std::unique_ptr<Database> database);
     std::unique_ptr<Database> database_;

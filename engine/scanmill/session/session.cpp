@@ -129,7 +129,7 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
     remove_incomplete_outputs(task.graph);
     if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
         warn("limits of time are not enforced without worker processes");
-    if (cache_ && task.repeats > 1) warn("costs are not measured, because this run uses a cache");
+    if (cache_ && task.gate.repeats > 1) warn("costs are not measured, because this run uses a cache");
     RunSettings run_settings;
     run_settings.threads =
         settings_.threads > 0 ? settings_.threads : std::max(1u, usable_cores() / std::max(1u, jobs));
@@ -146,8 +146,18 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
         in_process = std::make_unique<InProcessWorker>(library, cache_, settings_.keep, settings_.is_cancelled);
     Workers& workers = processes_ ? static_cast<Workers&>(*processes_) : *in_process;
 
-    RunStart start{task.name, task.file,        settings_.command_line, task.graph.seed,  run_settings.threads,
-                   jobs,      SCANMILL_VERSION, machine_text(),         libraries_text(), task.gate};
+    RunStart start;
+    start.workflow = task.name;
+    start.file = task.file;
+    start.arguments = settings_.command_line;
+    start.seed = task.graph.seed;
+    start.threads = run_settings.threads;
+    start.jobs = jobs;
+    start.version = SCANMILL_VERSION;
+    start.machine = machine_text();
+    start.libraries = libraries_text();
+    for (const GateRule& rule : task.gate.rules) start.gate.emplace_back(rule.metric, rule.text);
+    start.repeats = task.gate.repeats;
     Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn, !cache_);
     on_start({jobs, run_settings.threads, recorder.run()});
     std::vector<RunObserver*> all = observers;
@@ -167,8 +177,8 @@ void Session::measure_costs_again(const SessionTask& task, FilterLibrary& librar
     const RunGraph graph = graph_of_costs(task.graph, report);
     run_settings.prediction.clear();
     Clock clock(observers);
-    for (unsigned pass = 2; pass <= task.repeats && !report.interrupted && !graph.cells.empty(); ++pass) {
-        for (RunObserver* observer : observers) observer->pass_started(pass, task.repeats);
+    for (unsigned pass = 2; pass <= task.gate.repeats && !report.interrupted && !graph.cells.empty(); ++pass) {
+        for (RunObserver* observer : observers) observer->pass_started(pass, task.gate.repeats);
         const RunReport again = scanmill::run(library, graph, workers, run_settings, {&clock});
         recorder.add_pass(graph, again);
         report.interrupted = again.interrupted;

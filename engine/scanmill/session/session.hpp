@@ -37,8 +37,7 @@ struct SessionTask {
     std::string name, file;  ///< of the workflow or the batch
     RunGraph graph;
     Limits limits;
-    std::string gate{};    ///< to_json_text() of the batch's gate, for the records; empty: none
-    unsigned repeats = 1;  ///< how often costs are measured; without a cache
+    Gate gate{};  ///< of the batch; its repeats without a cache
 };
 
 /// What is decided when a run starts.

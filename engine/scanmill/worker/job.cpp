@@ -9,8 +9,8 @@
 #include <cstring>
 
 #include "scanmill/base/hash.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 #include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill {
 
@@ -37,32 +37,59 @@ Failure failure_of(const Job& job, Cause cause, Error error, int number) {
     return {cause, number, std::move(error), std::move(scan), {}};
 }
 
-static void to_json(nlohmann::json& json, const Error& error) {
-    json = {error.sentence(), error.frames(), error.hint(), error.remedy()};
+template <>
+struct JsonForm<Error> {
+    static Json write(const Error& error) {
+        return {error.sentence(), error.frames(), error.hint(), static_cast<int>(error.remedy())};
+    }
+    static void read(const Json& json, Error& error) {
+        require_size(json, 4);
+        std::string sentence, hint;
+        std::vector<std::string> frames;
+        int remedy = 0;
+        JsonForm<std::string>::read(json[0], sentence);
+        JsonForm<std::vector<std::string>>::read(json[1], frames);
+        JsonForm<std::string>::read(json[2], hint);
+        JsonForm<int>::read(json[3], remedy);
+        error = Error(std::move(sentence)).hint(std::move(hint)).remedy(static_cast<Remedy>(remedy));
+        for (std::string& frame : frames) error.add_frame(std::move(frame));
+    }
+};
+
+/// A planned step without its declaration, which job_from() takes from the library.
+struct StepMessage {
+    std::string filter;
+    int version = 0;
+    std::string label;
+    ParameterSet parameters;
+    std::vector<Kind> kinds;  ///< of the outputs
+    std::vector<PlannedExpectation> expectations;
+};
+constexpr auto fields(const StepMessage*) {
+    using R = StepMessage;
+    return std::tuple{field("filter", &R::filter), field("version", &R::version),
+                      field("label", &R::label),   field("parameters", &R::parameters),
+                      field("kinds", &R::kinds),   field("expectations", &R::expectations)};
 }
 
-static void from_json(const nlohmann::json& json, Error& error) {
-    error = Error(json.at(0).get<std::string>()).hint(json.at(2)).remedy(json.at(3).get<Remedy>());
-    for (const std::string& frame : json.at(1).get<std::vector<std::string>>()) error.add_frame(frame);
-}
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlannedExpectation, name, relation, unit, low, high, text)
-
-/// The filter's declaration is not sent: job_from() takes it from the library.
-static void to_json(nlohmann::json& json, const PlannedStep& step) {
-    std::vector<Kind> kinds;
-    for (const PortSpec& output : step.spec.outputs) kinds.push_back(output.kind);
-    json = {step.spec.name, step.spec.version, step.label, step.parameters, kinds, step.expectations};
-}
-
-static void from_json(const nlohmann::json& json, PlannedStep& step) {
-    json.at(0).get_to(step.spec.name);
-    json.at(1).get_to(step.spec.version);
-    json.at(2).get_to(step.label);
-    json.at(3).get_to(step.parameters);
-    for (const Kind& kind : json.at(4).get<std::vector<Kind>>()) step.spec.outputs.push_back({{}, kind, {}});
-    json.at(5).get_to(step.expectations);
-}
+template <>
+struct JsonForm<PlannedStep> {
+    static Json write(const PlannedStep& step) {
+        StepMessage message{step.spec.name, step.spec.version, step.label, step.parameters, {}, step.expectations};
+        for (const PortSpec& output : step.spec.outputs) message.kinds.push_back(output.kind);
+        return json_of(message);
+    }
+    static void read(const Json& json, PlannedStep& step) {
+        StepMessage message;
+        JsonForm<StepMessage>::read(json, message);
+        step.spec.name = std::move(message.filter);
+        step.spec.version = message.version;
+        step.label = std::move(message.label);
+        step.parameters = std::move(message.parameters);
+        for (const Kind kind : message.kinds) step.spec.outputs.push_back({{}, kind, {}});
+        step.expectations = std::move(message.expectations);
+    }
+};
 
 static void declare(std::shared_ptr<const PlannedStep>& step, const FilterLibrary& library) {
     const FilterSpec* spec = library.find(step->spec.name);
@@ -75,50 +102,16 @@ static void declare(std::shared_ptr<const PlannedStep>& step, const FilterLibrar
     step = std::make_shared<const PlannedStep>(std::move(declared));
 }
 
-}  // namespace scanmill
-
-template <>
-struct nlohmann::adl_serializer<std::shared_ptr<const scanmill::PlannedStep>> {
-    static void to_json(json& value, const std::shared_ptr<const scanmill::PlannedStep>& step) { value = *step; }
-    static void from_json(const json& value, std::shared_ptr<const scanmill::PlannedStep>& step) {
-        step = std::make_shared<const scanmill::PlannedStep>(value.get<scanmill::PlannedStep>());
-    }
-};
-
-namespace scanmill {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RigidTransform, rotation, translation, unit, from, to)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeafSource, file, content, kind, unit, frame, pose, invalid, is_streamed, also)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterFile, path, content)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobInput, port, node, from, content, leaf)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobCaching, is_used, plan_key, code, keep_always, inputs_cost, needed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReadWork, leaf, caching)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepWork, step, build, inputs, parameter_files, caching)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectWork, step, metrics, primary)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WriteWork, file, made_how, added_columns, must_be_closed, value)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Job, node, work, frame, scan, threads, seed, memory_limit, seconds_limit, limit_text)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, cause, number, error, scan, equal_scan)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Effort, seconds, cpu_seconds, peak_memory, threads, log)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NodeReport, outcome, origin, why, failure, effort, attempts, resolved, metrics,
-                                   properties, warnings, doubts)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OutputReport, file, outcome, kind, properties, warnings, doubts, sha256, bytes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobReport, outcome, lost, node, result, kept, output, was_read_whole, wear)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerStart, cache_folder, keep_policy, parent, core_build, scratch)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobMessage, job, forgotten)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerMessage, is_ready, loading, progress, warning, note, report)
+static constexpr std::string_view subject = "a message between runner and worker";
 
 template <class Message>
 static Message message_from(std::string_view bytes) {
-    try {
-        return nlohmann::json::from_cbor(bytes).get<Message>();
-    } catch (const nlohmann::json::exception& error) {
-        throw Error("a message between runner and worker cannot be read: {}", error.what());
-    }
+    return from_json<Message>(json_from_cbor(bytes, subject), subject);
 }
 
-std::string to_message(const WorkerStart& start) { return to_bytes(start); }
-std::string to_message(const JobMessage& message) { return to_bytes(message); }
-std::string to_message(const WorkerMessage& message) { return to_bytes(message); }
+std::string to_message(const WorkerStart& start) { return cbor_of(json_of(start)); }
+std::string to_message(const JobMessage& message) { return cbor_of(json_of(message)); }
+std::string to_message(const WorkerMessage& message) { return cbor_of(json_of(message)); }
 
 WorkerStart start_from(std::string_view message) { return message_from<WorkerStart>(message); }
 WorkerMessage worker_message_from(std::string_view message) { return message_from<WorkerMessage>(message); }

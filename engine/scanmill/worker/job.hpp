@@ -26,6 +26,11 @@ struct JobInput {
     std::string content;             ///< its name in the cache; empty: not cached
     std::optional<LeafSource> leaf;  ///< the file, if the node is a leaf
 };
+constexpr auto fields(const JobInput*) {
+    using R = JobInput;
+    return std::tuple{field("port", &R::port), field("node", &R::node), field("from", &R::from),
+                      field("content", &R::content), field("leaf", &R::leaf)};
+}
 
 struct JobCaching {
     bool is_used = false;  ///< false: the cache is neither read nor written
@@ -35,11 +40,21 @@ struct JobCaching {
     double inputs_cost = 0;    ///< seconds to compute those inputs again that the cache does not have
     std::vector<std::string> needed;  ///< output ports that other tasks need
 };
+constexpr auto fields(const JobCaching*) {
+    using R = JobCaching;
+    return std::tuple{
+        field("is-used", &R::is_used),         field("plan-key", &R::plan_key),       field("code", &R::code),
+        field("keep-always", &R::keep_always), field("inputs-cost", &R::inputs_cost), field("needed", &R::needed)};
+}
 
 struct ReadWork {
     LeafSource leaf;
     JobCaching caching;
 };
+constexpr auto fields(const ReadWork*) {
+    using R = ReadWork;
+    return std::tuple{field("leaf", &R::leaf), field("caching", &R::caching)};
+}
 
 struct StepWork {
     std::shared_ptr<const PlannedStep> step;
@@ -48,6 +63,11 @@ struct StepWork {
     std::vector<ParameterFile> parameter_files;
     JobCaching caching;
 };
+constexpr auto fields(const StepWork*) {
+    using R = StepWork;
+    return std::tuple{field("step", &R::step), field("build", &R::build), field("inputs", &R::inputs),
+                      field("parameter-files", &R::parameter_files), field("caching", &R::caching)};
+}
 
 /// Only checks whether a cached result meets the step's expectations.
 struct ExpectWork {
@@ -55,6 +75,10 @@ struct ExpectWork {
     Metrics metrics;
     JobInput primary;
 };
+constexpr auto fields(const ExpectWork*) {
+    using R = ExpectWork;
+    return std::tuple{field("step", &R::step), field("metrics", &R::metrics), field("primary", &R::primary)};
+}
 
 struct WriteWork {
     std::filesystem::path file;
@@ -63,6 +87,12 @@ struct WriteWork {
     bool must_be_closed = false;             ///< the step's expectation `closed: true` holds for the file too
     JobInput value;
 };
+constexpr auto fields(const WriteWork*) {
+    using R = WriteWork;
+    return std::tuple{field("file", &R::file), field("made-how", &R::made_how),
+                      field("added-columns", &R::added_columns), field("must-be-closed", &R::must_be_closed),
+                      field("value", &R::value)};
+}
 
 struct Job {
     std::size_t node = 0;  ///< whose values it computes, checks or writes
@@ -75,6 +105,18 @@ struct Job {
     double seconds_limit = 0;  ///< 0: none
     std::string limit_text;    ///< the setting behind seconds_limit, as a part of a sentence
 };
+constexpr auto fields(const Job*) {
+    using R = Job;
+    return std::tuple{field("node", &R::node),
+                      field("work", &R::work),
+                      field("frame", &R::frame),
+                      field("scan", &R::scan),
+                      field("threads", &R::threads),
+                      field("seed", &R::seed),
+                      field("memory-limit", &R::memory_limit),
+                      field("seconds-limit", &R::seconds_limit),
+                      field("limit-text", &R::limit_text)};
+}
 
 struct JobReport {
     Outcome outcome = Outcome::skipped;  ///< skipped: cancelled, or an input was lost
@@ -86,6 +128,17 @@ struct JobReport {
     bool was_read_whole = false;  ///< a scan that was planned as a stream
     std::string wear;  ///< why the worker should be replaced; empty: it need not be
 };
+constexpr auto fields(const JobReport*) {
+    using R = JobReport;
+    return std::tuple{field("outcome", &R::outcome),
+                      field("lost", &R::lost),
+                      field("node", &R::node),
+                      field("result", &R::result),
+                      field("kept", &R::kept),
+                      field("output", &R::output),
+                      field("was-read-whole", &R::was_read_whole),
+                      field("wear", &R::wear)};
+}
 
 /// Hash of all that decides the result: filter, parameters, content of the inputs. With resolved parameters it is the
 /// run key; with authored ones, equal keys mean equal run keys.
@@ -105,6 +158,11 @@ struct WorkerStart {
     std::string core_build;
     std::string scratch;  ///< a folder that only this worker uses
 };
+constexpr auto fields(const WorkerStart*) {
+    using R = WorkerStart;
+    return std::tuple{field("cache-folder", &R::cache_folder), field("keep-policy", &R::keep_policy),
+                      field("parent", &R::parent), field("core-build", &R::core_build), field("scratch", &R::scratch)};
+}
 std::string to_message(const WorkerStart& start);
 WorkerStart start_from(std::string_view message);
 
@@ -113,6 +171,10 @@ struct JobMessage {
     std::optional<Job> job;
     std::vector<std::size_t> forgotten;  ///< nodes whose values the worker drops first
 };
+constexpr auto fields(const JobMessage*) {
+    using R = JobMessage;
+    return std::tuple{field("job", &R::job), field("forgotten", &R::forgotten)};
+}
 std::string to_message(const JobMessage& message);
 /// The message contains filters by name; `library` has their declarations.
 JobMessage job_from(std::string_view message, const FilterLibrary& library);
@@ -126,6 +188,11 @@ struct WorkerMessage {
     std::optional<std::string> note = {};     ///< of the worker's cache
     std::optional<JobReport> report = {};
 };
+constexpr auto fields(const WorkerMessage*) {
+    using R = WorkerMessage;
+    return std::tuple{field("is-ready", &R::is_ready), field("loading", &R::loading), field("progress", &R::progress),
+                      field("warning", &R::warning),   field("note", &R::note),       field("report", &R::report)};
+}
 std::string to_message(const WorkerMessage& message);
 WorkerMessage worker_message_from(std::string_view message);
 

@@ -2,33 +2,9 @@
 #include "scanmill/worker/report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 namespace scanmill {
-
-namespace {
-
-template <std::size_t size, class Enum>
-std::string_view nth(const std::array<std::string_view, size>& names, Enum value) {
-    return names.at(static_cast<std::size_t>(value));
-}
-
-}  // namespace
-
-std::string_view name_of(Outcome outcome) {
-    return nth(std::array<std::string_view, 4>{"ok", "doubtful", "failed", "skipped"}, outcome);
-}
-
-std::string_view name_of(Origin origin) {
-    return nth(std::array<std::string_view, 3>{"ran", "cached", "same inputs"}, origin);
-}
-
-std::string_view name_of(Cause cause) {
-    return nth(std::array<std::string_view, 9>{"", "refused", "expectation", "exception", "memory", "time", "signal",
-                                               "exit", "output"},
-               cause);
-}
 
 Error Failure::whole() const {
     Error all = error;

@@ -2,6 +2,7 @@
 #pragma once
 /// The outcome of a run: of every node, every cell and every output file.
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/graph/graph.hpp"
 #include "scanmill/kinds/value.hpp"
+#include "scanmill/record/fields.hpp"
 
 namespace scanmill {
 
@@ -22,7 +24,7 @@ enum class Outcome {
     failed,
     skipped  ///< an input failed, or the run was interrupted
 };
-std::string_view name_of(Outcome outcome);
+constexpr std::array<std::string_view, 4> names_of(const Outcome*) { return {"ok", "doubtful", "failed", "skipped"}; }
 
 /// Where a node's result came from.
 enum class Origin {
@@ -30,7 +32,7 @@ enum class Origin {
     cached,      ///< found by the plan key, before the run
     same_inputs  ///< found by the run key, during the run: an upstream change did not change the inputs
 };
-std::string_view name_of(Origin origin);
+constexpr std::array<std::string_view, 3> names_of(const Origin*) { return {"ran", "cached", "same inputs"}; }
 
 enum class Cause {
     none,
@@ -43,7 +45,9 @@ enum class Cause {
     exit,         ///< the worker process exited
     output        ///< a file could not be written
 };
-std::string_view name_of(Cause cause);
+constexpr std::array<std::string_view, 9> names_of(const Cause*) {
+    return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output"};
+}
 
 struct Failure {
     Cause cause = Cause::none;
@@ -56,15 +60,28 @@ struct Failure {
     /// The error with a frame for the scan.
     Error whole() const;
 };
+constexpr auto fields(const Failure*) {
+    using R = Failure;
+    return std::tuple{field("cause", &R::cause), field("number", &R::number), field("error", &R::error),
+                      field("scan", &R::scan), field("equal-scan", &R::equal_scan)};
+}
 
 /// Resources that a job used, and what its process wrote.
 struct Effort {
-    double seconds = 0;
-    double cpu_seconds = 0;  ///< of all threads
-    u64 peak_memory = 0;     ///< largest resident size of the process in bytes; 0: unknown
-    unsigned threads = 0;    ///< threads that the filter could use
-    std::vector<std::string> log;  ///< the last lines on its standard output and error
+    double seconds = 0, cpu_seconds = 0;
+    u64 peak_memory = 0;
+    unsigned threads = 0;
+    std::vector<std::string> log;
 };
+constexpr auto fields(const Effort*) {
+    using R = Effort;
+    return std::tuple{
+        field("seconds", &R::seconds, "Wall-clock time."),
+        field("cpu-seconds", &R::cpu_seconds, "Processor time of all threads."),
+        field("peak-memory", &R::peak_memory, "Largest resident size of the process; 0: unknown.").unit("bytes"),
+        field("threads", &R::threads, "Threads that the filter could use."),
+        field("log", &R::log, "The last lines on its standard output and error.").optional()};
+}
 
 struct NodeReport {
     Outcome outcome = Outcome::skipped;
@@ -79,6 +96,14 @@ struct NodeReport {
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
 };
+constexpr auto fields(const NodeReport*) {
+    using R = NodeReport;
+    return std::tuple{
+        field("outcome", &R::outcome),   field("origin", &R::origin),   field("why", &R::why),
+        field("failure", &R::failure),   field("effort", &R::effort),   field("attempts", &R::attempts),
+        field("resolved", &R::resolved), field("metrics", &R::metrics), field("properties", &R::properties),
+        field("warnings", &R::warnings), field("doubts", &R::doubts)};
+}
 
 struct OutputReport {
     std::filesystem::path file;
@@ -92,6 +117,13 @@ struct OutputReport {
     std::filesystem::path moved_to;   ///< where the file of an earlier run was moved; empty: nowhere
     std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: it need not be
 };
+constexpr auto fields(const OutputReport*) {
+    using R = OutputReport;
+    return std::tuple{field("file", &R::file),         field("outcome", &R::outcome),
+                      field("kind", &R::kind),         field("properties", &R::properties),
+                      field("warnings", &R::warnings), field("doubts", &R::doubts),
+                      field("sha256", &R::sha256),     field("bytes", &R::bytes)};
+}
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What `run`, `batch` and `runs` print with --json, in terms of the records of a run.
+
+#include "scanmill/report/run_report.hpp"
+
+namespace scanmill {
+
+/// `scanmill run --json`
+struct RunDocument {
+    std::string workflow;
+    bool interrupted = false;
+    std::vector<StepRecord> steps;
+    std::vector<CellRecord> cells;
+};
+constexpr auto fields(const RunDocument*) {
+    using R = RunDocument;
+    return std::tuple{field("workflow", &R::workflow), field("interrupted", &R::interrupted), field("steps", &R::steps),
+                      field("cells", &R::cells)};
+}
+
+// `scanmill runs`
+
+struct RevocationDocument {
+    std::string at, who, why;
+};
+constexpr auto fields(const RevocationDocument*) {
+    using R = RevocationDocument;
+    return std::tuple{field("at", &R::at), field("who", &R::who), field("why", &R::why)};
+}
+
+struct AcceptanceDocument {
+    std::string at, who, why;
+    bool baseline = false;
+    std::optional<RevocationDocument> revoked;
+};
+constexpr auto fields(const AcceptanceDocument*) {
+    using R = AcceptanceDocument;
+    return std::tuple{field("at", &R::at), field("who", &R::who), field("why", &R::why),
+                      field("baseline", &R::baseline, "Later runs are compared with this one."),
+                      field("revoked", &R::revoked, "null: it is valid.")};
+}
+
+struct ListedRun {
+    RunSummary summary;
+    bool killed = false;
+    std::vector<AcceptanceDocument> accepted;
+};
+constexpr auto fields(const ListedRun*) {
+    using R = ListedRun;
+    return std::tuple{field("summary", &R::summary).flat(), field("killed", &R::killed, "It has no end.").optional(),
+                      field("accepted", &R::accepted).optional()};
+}
+
+struct RunsDocument {
+    std::vector<ListedRun> runs;
+};
+constexpr auto fields(const RunsDocument*) { return std::tuple{field("runs", &RunsDocument::runs)}; }
+
+struct ShownRun {
+    ListedRun run;
+    RunStart start;
+};
+constexpr auto fields(const ShownRun*) {
+    return std::tuple{field("run", &ShownRun::run).flat(), field("start", &ShownRun::start).flat()};
+}
+
+struct ShownRunDocument {
+    ShownRun run;
+    std::vector<CellRecord> cells;
+    std::vector<StepRecord> steps;
+};
+constexpr auto fields(const ShownRunDocument*) {
+    using R = ShownRunDocument;
+    return std::tuple{field("run", &R::run), field("cells", &R::cells), field("steps", &R::steps)};
+}
+
+// Events of a batch: the members that follow `event` and `at`.
+
+struct RunStartedEvent {
+    int scanmill = 1;
+    std::string name;
+    std::int64_t run = 0;
+    unsigned jobs = 0, threads = 0;
+    std::size_t steps = 0, cells = 0;
+};
+constexpr auto fields(const RunStartedEvent*) {
+    using R = RunStartedEvent;
+    return std::tuple{field("scanmill", &R::scanmill, "Version of the format."),
+                      field("name", &R::name),
+                      field("run", &R::run, "Its number in the records; absent: not recorded.").optional(),
+                      field("jobs", &R::jobs),
+                      field("threads", &R::threads),
+                      field("steps", &R::steps),
+                      field("cells", &R::cells)};
+}
+
+struct StepName {
+    std::size_t node = 0;
+    std::string scan, workflow, step;
+    std::vector<std::string> variants;
+};
+constexpr auto fields(const StepName*) {
+    using R = StepName;
+    return std::tuple{field("node", &R::node, "The step's number, from 0."), field("scan", &R::scan),
+                      field("workflow", &R::workflow), field("step", &R::step),
+                      field("variants", &R::variants, "That use it; absent if there is only one.").optional()};
+}
+
+struct StepStartedEvent {
+    StepName step;
+    std::size_t worker = 0;
+};
+constexpr auto fields(const StepStartedEvent*) {
+    using R = StepStartedEvent;
+    return std::tuple{field("step", &R::step).flat(), field("worker", &R::worker)};
+}
+
+struct StepProgressEvent {
+    StepName step;
+    int percent = 0;
+};
+constexpr auto fields(const StepProgressEvent*) {
+    using R = StepProgressEvent;
+    return std::tuple{field("step", &R::step).flat(), field("percent", &R::percent)};
+}
+
+struct WarningEvent {
+    StepName step;
+    std::string text;
+};
+constexpr auto fields(const WarningEvent*) {
+    using R = WarningEvent;
+    return std::tuple{field("step", &R::step).flat(), field("text", &R::text)};
+}
+
+struct StepEndedEvent {
+    std::vector<std::string> variants;
+    StepRecord record;
+};
+constexpr auto fields(const StepEndedEvent*) {
+    using R = StepEndedEvent;
+    return std::tuple{field("variants", &R::variants, "That use it; absent if there is only one.").optional(),
+                      field("record", &R::record).flat()};
+}
+
+struct OutputWrittenEvent {
+    std::string scan;
+    OutputRecord record;
+};
+constexpr auto fields(const OutputWrittenEvent*) {
+    using R = OutputWrittenEvent;
+    return std::tuple{field("scan", &R::scan), field("record", &R::record).flat()};
+}
+
+struct CellEndedEvent {
+    std::size_t cell = 0;
+    CellRecord record;
+};
+constexpr auto fields(const CellEndedEvent*) {
+    using R = CellEndedEvent;
+    return std::tuple{field("cell", &R::cell, "Its number, from 0."), field("record", &R::record).flat()};
+}
+
+struct PassStartedEvent {
+    unsigned pass = 0, passes = 0;
+};
+constexpr auto fields(const PassStartedEvent*) {
+    using R = PassStartedEvent;
+    return std::tuple{field("pass", &R::pass, "Steps run again for their costs."), field("passes", &R::passes)};
+}
+
+struct RunEndedEvent {
+    bool interrupted = false;
+    std::size_t ok = 0, doubtful = 0, failed = 0, skipped = 0;
+};
+constexpr auto fields(const RunEndedEvent*) {
+    using R = RunEndedEvent;
+    return std::tuple{field("interrupted", &R::interrupted), field("ok", &R::ok, "Cells."),
+                      field("doubtful", &R::doubtful, "Cells."), field("failed", &R::failed, "Cells."),
+                      field("skipped", &R::skipped, "Cells.")};
+}
+
+}  // namespace scanmill

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/report/run_report.hpp"
+
+namespace scanmill {
+
+static Texts texts_of(const ParameterSet& parameters) {
+    Texts texts;
+    for (const auto& [name, value] : parameters.values)
+        if (std::string shown = text(value); !shown.empty()) texts.emplace_back(name, std::move(shown));
+    return texts;
+}
+
+FailureRecord record_of(const Failure& failure) {
+    return {failure.cause, failure.number, failure ? failure.whole().what() : ""};
+}
+
+StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeReport& report, std::string build) {
+    StepRecord step;
+    step.node = graph.index(node);
+    step.workflow = workflow_name(*graph.plans[node.plan]);
+    step.label = graph.label(node);
+    step.scan = graph.scan_names[node.scan];
+    step.plan_key = node.key;
+    if (const PlannedStep* planned = graph.step(node)) {
+        step.filter = planned->spec.name;
+        step.filter_version = planned->spec.version;
+        step.build = std::move(build);
+        step.authored = texts_of(planned->parameters);
+        step.measures = planned->measures;
+    } else {
+        step.file = node.leaf.file.string();
+        step.authored = declared_of(node.leaf);
+    }
+    step.origin = report.origin;
+    step.why = report.why;
+    step.outcome = report.outcome;
+    step.failure = record_of(report.failure);
+    step.effort = report.effort;
+    step.attempts = report.attempts;
+    step.resolved = texts_of(report.resolved);
+    step.metrics = report.metrics;
+    step.properties = report.properties;
+    step.warnings = report.warnings;
+    return step;
+}
+
+OutputRecord output_record(const OutputReport& report) {
+    return {report.file.string(), std::string(name_of(report.kind)),
+            report.outcome,       report.properties,
+            report.warnings,      report.sha256,
+            report.bytes,         report.moved_to.string(),
+            report.not_moved};
+}
+
+CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report) {
+    CellRecord record;
+    record.scan = graph.scan_names[cell.scan];
+    record.workflow = graph.workflow(cell);
+    record.variant = graph.variant(cell).name;
+    record.outcome = report.outcome;
+    record.failure = record_of(report.failure);
+    record.seconds = report.seconds;
+    record.nodes = cell.nodes;
+    record.doubts = report.doubts;
+    record.truth = cell.truth.string();
+    for (const OutputReport& output : report.outputs) record.outputs.push_back(output_record(output));
+    return record;
+}
+
+}  // namespace scanmill
