@@ -231,6 +231,18 @@ struct JsonForm<std::array<T, size>> {
     static Json schema() { return schema::tuple_of(size, JsonForm<T>::schema()); }
 };
 
+template <class First, class Second>
+struct JsonForm<std::pair<First, Second>> {
+    static Json write(const std::pair<First, Second>& pair) {
+        return Json::array({json_of(pair.first), json_of(pair.second)});
+    }
+    static void read(const Json& json, std::pair<First, Second>& pair) {
+        require_size(json, 2);
+        JsonForm<First>::read(json[0], pair.first);
+        JsonForm<Second>::read(json[1], pair.second);
+    }
+};
+
 /// The coefficients, column by column.
 template <int rows, int columns>
 struct JsonForm<Eigen::Matrix<double, rows, columns>> {

@@ -59,6 +59,7 @@ public:
     /// Cost: one pass over every byte of the value, to hash it.
     explicit EncodedValue(Value value);
 
+    const Value& value() const { return value_; }
     const std::string& content() const { return name_.content; }
     /// Bytes of the file.
     u64 size() const { return name_.bytes; }

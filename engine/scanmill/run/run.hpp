@@ -23,9 +23,6 @@ struct RunSettings {
     bool fail_fast = false;  ///< starts nothing new once a cell has failed
     std::function<bool()> is_cancelled;
     Cache* cache = nullptr;  ///< null: everything is computed, nothing is stored
-    /// Stores values that several steps need whatever they cost, so that other workers can take over steps, and so that
-    /// a crash does not lose them.
-    bool shares_values = false;
     std::vector<NodePrediction> prediction = {};  ///< from predict(); empty: run() calls it
 };
 

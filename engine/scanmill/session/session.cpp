@@ -136,7 +136,6 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
     run_settings.limits = task.limits;
     run_settings.fail_fast = settings_.fail_fast;
     run_settings.cache = cache_;
-    run_settings.shares_values = jobs > 0 && cache_ && settings_.keep != KeepRule::Policy::never;
     run_settings.prediction = std::move(predictions);
     run_settings.is_cancelled = settings_.is_cancelled;
     std::unique_ptr<Workers> in_process;

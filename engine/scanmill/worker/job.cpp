@@ -110,18 +110,17 @@ static Message message_from(std::string_view bytes) {
 }
 
 std::string to_message(const WorkerStart& start) { return cbor_of(json_of(start)); }
-std::string to_message(const JobMessage& message) { return cbor_of(json_of(message)); }
+std::string to_message(const Job& job) { return cbor_of(json_of(job)); }
 std::string to_message(const WorkerMessage& message) { return cbor_of(json_of(message)); }
 
 WorkerStart start_from(std::string_view message) { return message_from<WorkerStart>(message); }
 WorkerMessage worker_message_from(std::string_view message) { return message_from<WorkerMessage>(message); }
 
-JobMessage job_from(std::string_view bytes, const FilterLibrary& library) {
-    JobMessage message = message_from<JobMessage>(bytes);
-    if (!message.job) return message;
-    if (auto* work = std::get_if<StepWork>(&message.job->work)) declare(work->step, library);
-    if (auto* work = std::get_if<ExpectWork>(&message.job->work)) declare(work->step, library);
-    return message;
+Job job_from(std::string_view message, const FilterLibrary& library) {
+    Job job = message_from<Job>(message);
+    if (auto* work = std::get_if<StepWork>(&job.work)) declare(work->step, library);
+    if (auto* work = std::get_if<ExpectWork>(&job.work)) declare(work->step, library);
+    return job;
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "scanmill/cache/run_values.hpp"
 #include "scanmill/cache/step_result.hpp"
 #include "scanmill/graph/graph.hpp"
 #include "scanmill/plugin/library.hpp"
@@ -18,7 +19,7 @@
 
 namespace scanmill {
 
-/// A value that a job needs. The worker has it from an earlier job, or finds it in the cache, or reads it from a file.
+/// A value that a job needs: in RunValues, in the cache, or in the file to read.
 struct JobInput {
     std::string port;                ///< of the step that takes it
     std::size_t node = 0;            ///< the node that the value belongs to
@@ -36,15 +37,13 @@ struct JobCaching {
     bool is_used = false;  ///< false: the cache is neither read nor written
     std::string plan_key;
     std::string code;
-    bool keep_always = false;  ///< several steps need the values: they are stored whatever they cost
-    double inputs_cost = 0;    ///< seconds to compute those inputs again that the cache does not have
+    double inputs_cost = 0;  ///< seconds to compute those inputs again that the cache does not have
     std::vector<std::string> needed;  ///< output ports that other tasks need
 };
 constexpr auto fields(const JobCaching*) {
     using R = JobCaching;
-    return std::tuple{
-        field("is-used", &R::is_used),         field("plan-key", &R::plan_key),       field("code", &R::code),
-        field("keep-always", &R::keep_always), field("inputs-cost", &R::inputs_cost), field("needed", &R::needed)};
+    return std::tuple{field("is-used", &R::is_used), field("plan-key", &R::plan_key), field("code", &R::code),
+                      field("inputs-cost", &R::inputs_cost), field("needed", &R::needed)};
 }
 
 struct ReadWork {
@@ -86,12 +85,16 @@ struct WriteWork {
     std::vector<std::string> added_columns;  ///< those of added_columns()
     bool must_be_closed = false;             ///< the step's expectation `closed: true` holds for the file too
     JobInput value;
+    Metrics properties{};  ///< of the value; empty: not computed yet
 };
 constexpr auto fields(const WriteWork*) {
     using R = WriteWork;
-    return std::tuple{field("file", &R::file), field("made-how", &R::made_how),
-                      field("added-columns", &R::added_columns), field("must-be-closed", &R::must_be_closed),
-                      field("value", &R::value)};
+    return std::tuple{field("file", &R::file),
+                      field("made-how", &R::made_how),
+                      field("added-columns", &R::added_columns),
+                      field("must-be-closed", &R::must_be_closed),
+                      field("value", &R::value),
+                      field("properties", &R::properties)};
 }
 
 struct Job {
@@ -120,13 +123,13 @@ constexpr auto fields(const Job*) {
 
 struct JobReport {
     Outcome outcome = Outcome::skipped;  ///< skipped: cancelled, or an input was lost
-    std::vector<JobInput> lost;          ///< inputs that neither the worker nor the cache has any longer
+    std::vector<ValueSlot> lost;         ///< inputs that were removed from the cache
     NodeReport node;                     ///< its failure and effort are also those of a write
     StepResult result;                   ///< as stored in the cache; empty without a cache
     std::vector<std::string> kept;       ///< ports whose values the cache has
     OutputReport output;
     bool was_read_whole = false;  ///< a scan that was planned as a stream
-    std::string wear;  ///< why the worker should be replaced; empty: it need not be
+    std::string wear;  ///< why the process should be replaced; empty: it need not be
 };
 constexpr auto fields(const JobReport*) {
     using R = JobReport;
@@ -156,28 +159,22 @@ struct WorkerStart {
     int keep_policy = 0;
     int parent = 0;  ///< process ID; the worker ends with it
     std::string core_build;
+    std::string values;   ///< the folder of RunValues
     std::string scratch;  ///< a folder that only this worker uses
 };
 constexpr auto fields(const WorkerStart*) {
     using R = WorkerStart;
-    return std::tuple{field("cache-folder", &R::cache_folder), field("keep-policy", &R::keep_policy),
-                      field("parent", &R::parent), field("core-build", &R::core_build), field("scratch", &R::scratch)};
+    return std::tuple{
+        field("cache-folder", &R::cache_folder), field("keep-policy", &R::keep_policy), field("parent", &R::parent),
+        field("core-build", &R::core_build),     field("values", &R::values),           field("scratch", &R::scratch)};
 }
 std::string to_message(const WorkerStart& start);
 WorkerStart start_from(std::string_view message);
 
 /// All further messages to a worker.
-struct JobMessage {
-    std::optional<Job> job;
-    std::vector<std::size_t> forgotten;  ///< nodes whose values the worker drops first
-};
-constexpr auto fields(const JobMessage*) {
-    using R = JobMessage;
-    return std::tuple{field("job", &R::job), field("forgotten", &R::forgotten)};
-}
-std::string to_message(const JobMessage& message);
+std::string to_message(const Job& job);
 /// The message contains filters by name; `library` has their declarations.
-JobMessage job_from(std::string_view message, const FilterLibrary& library);
+Job job_from(std::string_view message, const FilterLibrary& library);
 
 /// A message from a worker; one of these.
 struct WorkerMessage {

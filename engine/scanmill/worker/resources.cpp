@@ -10,8 +10,6 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
-#include <cfenv>
-#include <clocale>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -105,55 +103,6 @@ ResidentMemory resident_memory(int process) {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::size_t count_open_files() {
-    std::error_code unknown;
-    std::size_t count = 0;
-    for (fs::directory_iterator entry("/proc/self/fd", unknown), end; !unknown && entry != end;
-         entry.increment(unknown))
-        ++count;
-    return count;
-}
-
-std::string environment_text() {
-    std::string all;
-    for (char** entry = environ; entry && *entry; ++entry) all.append(*entry).push_back('\0');
-    return all;
-}
-
-unsigned file_mask() {
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    return mask;
-}
-
-}  // namespace
-
-ProcessState ProcessState::now() {
-    ProcessState state;
-    std::error_code gone;
-    state.folder_ = fs::current_path(gone).string();
-    state.locale_ = std::setlocale(LC_ALL, nullptr);
-    state.environment_ = environment_text();
-    state.file_mask_ = file_mask();
-    state.rounding_ = std::fegetround();
-    state.open_files_ = count_open_files();
-    return state;
-}
-
-std::string ProcessState::changes_since(const ProcessState& before) const {
-    if (open_files_ > before.open_files_)
-        return count_text(open_files_ - before.open_files_, "more file is open", "more files are open");
-    if (open_files_ < before.open_files_) return "files were closed that the filter did not open";
-    if (folder_ != before.folder_) return "the working folder changed";
-    if (locale_ != before.locale_) return "the locale changed";
-    if (environment_ != before.environment_) return "the environment changed";
-    if (file_mask_ != before.file_mask_) return "the file mask changed";
-    if (rounding_ != before.rounding_) return "the rounding of numbers changed";
-    return {};
-}
-
-namespace {
 
 constexpr const char* prefix = "scanmill-scratch-";
 

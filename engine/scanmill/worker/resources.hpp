@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Resources of this process and the machine: memory, time, scratch folder, and process state that filters can change.
+/// Resources of this process and the machine: memory, time and scratch folder.
 
 #include <chrono>
 #include <filesystem>
@@ -45,21 +45,6 @@ struct ResidentMemory {
     u64 anonymous = 0;  ///< now, without mapped files
 };
 ResidentMemory resident_memory(int process);
-
-/// State of this process that a filter can change and that would affect the next one.
-class ProcessState {
-public:
-    static ProcessState now();
-
-    /// The first difference to `before`, as a part of a sentence: "3 more files are open"; empty: none.
-    std::string changes_since(const ProcessState& before) const;
-
-private:
-    std::string folder_, locale_, environment_;
-    unsigned file_mask_ = 0;
-    int rounding_ = 0;
-    std::size_t open_files_ = 0;
-};
 
 /// A folder for temporary files in the system's temporary folder, removed at the end with its content. The constructor
 /// removes folders that killed processes left behind.

@@ -58,14 +58,23 @@ void prepare_process(const WorkerStart& start) {
 
 u64 anonymous_memory() { return resident_memory(::getpid()).anonymous; }
 
-/// A sentence if this process, which holds no values, uses much more memory than at its start; else empty.
-std::string memory_leak(u64 at_start) {
+std::size_t open_files() {
+    std::error_code unknown;
+    const std::filesystem::directory_iterator files("/proc/self/fd", unknown);
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+/// Memory and files that a process has after a job beyond those of its start. As a part of a sentence; empty: little.
+std::string leak(u64 memory_at_start, std::size_t files_at_start) {
+    if (const std::size_t files = open_files(); files > files_at_start)
+        return count_text(files - files_at_start, "more file is open", "more files are open");
     constexpr u64 tolerable = u64(256) << 20;
-    if (anonymous_memory() < at_start + tolerable) return {};
+    if (anonymous_memory() < memory_at_start + tolerable) return {};
     ::malloc_trim(0);
     const u64 now = anonymous_memory();
-    return now < at_start + tolerable ? ""
-                                      : fmt::format("{} of memory was not released", byte_size_text(now - at_start));
+    return now < memory_at_start + tolerable
+               ? ""
+               : fmt::format("{} of memory was not released", byte_size_text(now - memory_at_start));
 }
 
 int serve(MessageReader& reader) {
@@ -85,25 +94,21 @@ int serve(MessageReader& reader) {
         cache = std::make_unique<Cache>(start.cache_folder, Cache::default_limit,
                                         [&](std::string text) { sender.send({.note = std::move(text)}); });
     FilterLibrary library(plugin_folders());
-    Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
+    RunValues values(start.values);
+    Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), values, start.scratch);
     if (content_hash(core_library_file()) != start.core_build)
         throw Error("Scanmill was reinstalled during the run; run it again");
     const u64 memory_at_start = anonymous_memory();
+    const std::size_t files_at_start = open_files();
     const JobListener listener{[&](double fraction) { sender.send_progress(fraction); },
                                [&](std::string_view text) { sender.send({.warning = std::string(text)}); },
                                [] { return cancel_requested != 0; },
                                [&](std::string module) { sender.send({.loading = std::move(module)}); }};
     sender.send({.is_ready = true});
     while (const std::optional<std::string> message = next()) {
-        const JobMessage received = job_from(*message, library);
-        for (const std::size_t node : received.forgotten) bench.forget(node);
-        if (!received.job) continue;
-        const std::string leak = bench.is_empty() ? memory_leak(memory_at_start) : "";
-        const ProcessState before = ProcessState::now();
-        JobReport report = bench.perform(*received.job, listener);
+        JobReport report = bench.perform(job_from(*message, library), listener);
         std::fflush(nullptr);
-        report.wear = ProcessState::now().changes_since(before);
-        if (report.wear.empty()) report.wear = leak;
+        report.wear = leak(memory_at_start, files_at_start);
         sender.send({.report = std::move(report)});
     }
     return 0;

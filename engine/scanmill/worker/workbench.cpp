@@ -23,13 +23,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Thrown when the worker can get an input from nowhere; the report contains it.
+/// Thrown when an input is nowhere; the report contains it.
 struct InputLost {};
 
-/// Thrown when a result does not meet the step's expectations.
-struct Unmet {
+/// Thrown when a job fails for another cause than a refusal.
+struct JobFailure {
+    Cause cause;
     Error error;
 };
+
+void check_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
+    try {
+        require_expectations(step, primary, report);
+    } catch (const Error& error) {
+        throw JobFailure{Cause::expectation, error};
+    }
+}
 
 fs::path emptied(const fs::path& folder) {
     std::error_code ignored;
@@ -50,10 +59,11 @@ Error out_of_memory(u64 limit, u64 peak) {
 
 }  // namespace
 
-Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, fs::path scratch)
+Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, RunValues& values, fs::path scratch)
     : library_(library),
       cache_(cache),
       rule_(policy),
+      values_(values),
       scratch_(std::move(scratch)),
       folder_(fs::current_path()) {}
 
@@ -72,15 +82,14 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
         if (const auto* step = std::get_if<StepWork>(&job.work)) run(job, *step, listener, report);
         if (const auto* expecting = std::get_if<ExpectWork>(&job.work)) {
             report.node.metrics = expecting->metrics;
-            check_expectations(*expecting->step, fetch(expecting->primary, report),
-                               {expecting->primary.node, expecting->primary.from}, report.node);
+            check_expectations(*expecting->step, fetch(expecting->primary, report), report.node);
         }
         if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(*writing, report);
         report.outcome = Outcome::ok;
     } catch (const Cancelled&) {
     } catch (const InputLost&) {
-    } catch (const Unmet& unmet) {
-        fail(Cause::expectation, unmet.error);
+    } catch (const JobFailure& failure) {
+        fail(failure.cause, failure.error);
     } catch (const Error& error) {
         fail(is_write ? Cause::output : Cause::refused, error);
     } catch (const std::bad_alloc&) {
@@ -148,32 +157,19 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
             throw;
         } catch (...) {
             report_warnings();
-            if (scan) scans_.require_unchanged(work.inputs.front().node);  // a change explains the failure
+            if (scan && scan_->check) scan_->check->require();  // a change explains the failure
             throw;
         }
     }();
     const double seconds = seconds_since(start);
     report_warnings();
-    if (scan) scans_.require_unchanged(work.inputs.front().node);
+    if (scan && scan_->check) scan_->check->require();
     if (uses_cache(work.caching))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
-    std::vector<StepInput>& values = values_[job.node] = {};
-    for (const auto& [port, value] : outputs) values.push_back({port, value});
     if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
-    if (report.node.origin == Origin::ran) store(job, work.caching, run_key, "", seconds, report);
-    if (step.expectations.empty()) return;
-    const std::string& primary = step.spec.outputs.front().name;
-    check_expectations(step, *find(job.node, primary), {job.node, primary}, report.node);
-}
-
-void Workbench::check_expectations(const PlannedStep& step, const Value& primary, const Slot& slot,
-                                   NodeReport& report) {
-    try {
-        require_expectations(step, primary, report);
-    } catch (const Error& error) {
-        throw Unmet{error};
-    }
-    properties_[slot] = report.properties;
+    if (report.node.origin == Origin::ran) store(job, work.caching, run_key, outputs, seconds, report);
+    if (!step.expectations.empty())
+        check_expectations(step, *outputs.find(step.spec.outputs.front().name), report.node);
 }
 
 void Workbench::write(const WriteWork& work, JobReport& report) {
@@ -201,8 +197,7 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     };
     write_file(work.file, value, options);
     written.sha256 = hash.text();
-    const auto found = properties_.find({work.value.node, work.value.from});
-    written.properties = found != properties_.end() ? found->second : properties_of(value);
+    written.properties = work.properties.values.empty() ? properties_of(value) : work.properties;
     if (!written.doubts.empty()) written.properties.set("closed", 0, Unit::boolean);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name) try {
@@ -221,7 +216,7 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     written.outcome = Outcome::ok;
 }
 
-// Inputs: files that are read or opened, and values from memory or the cache.
+// Inputs: files that are read or opened, and values.
 
 namespace {
 
@@ -262,8 +257,7 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     if (dropped > 0) report.node.properties.set("dropped-points", static_cast<double>(dropped), Unit::count);
     if (const PointCloud* cloud = value.find<PointCloud>())
         add_stray_points(robust_box(cloud->positions.span()), report.node.properties);
-    values_[job.node] = {{"", std::move(value)}};
-    store(job, work.caching, work.caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
+    store(job, work.caching, work.caching.plan_key, Outputs().set("", std::move(value)), seconds_since(start), report);
 }
 
 /// Opens the scan as a stream, and stores in the cache the result that reading its value would give. False if the file
@@ -284,7 +278,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
         check_cancelled();
         if (is_hashed) content.add_world(positions);
     };
-    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(caching), on_warning, on_positions);
+    const auto scan = open(job.node, work.leaf, job.threads, uses_cache(caching), on_warning, on_positions);
     if (!scan) return false;
     report_warnings();
     report.node.properties.set("points", static_cast<double>(scan->size()), Unit::count);
@@ -296,47 +290,50 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
         const ValueName name = content.of(*scan, job.threads, check_cancelled);
         outputs = {{"", kind_of<PointCloud>(), name.content, name.bytes}};
     }
-    scans_.require_unchanged(job.node);
+    if (scan_->check) scan_->check->require();
     report.result.outputs = std::move(outputs);
     add_kept(report);
-    store(job, caching, caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
+    store(job, caching, caching.plan_key, {}, seconds_since(start), report);
     return true;
 }
 
-const Value* Workbench::find(std::size_t node, const std::string& port) const {
-    const auto of_node = values_.find(node);
-    if (of_node == values_.end()) return nullptr;
-    const auto found = std::ranges::find(of_node->second, port, &StepInput::port);
-    return found == of_node->second.end() ? nullptr : &found->value;
+std::shared_ptr<const PointStream> Workbench::open(std::size_t node, const LeafSource& leaf, unsigned threads,
+                                                   bool is_checked, const OnWarning& on_warning,
+                                                   const OnWorldPositions& on_positions) {
+    scan_.reset();
+    std::optional<UnchangedWhileRead> check;
+    if (is_checked) check.emplace(leaf.file, leaf.content, threads > 1);
+    auto stream = open_leaf(leaf, threads, on_warning, on_positions);
+    if (stream) scan_ = OpenScan{node, stream, std::move(check)};
+    return stream;
 }
 
 std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, unsigned threads) {
     if (!can_stream(*work.step, work.inputs.size())) return nullptr;
     const JobInput& input = work.inputs.front();
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
-    if (const auto scan = scans_.find(input.node)) return scan;
-    if (find(input.node, input.from)) return nullptr;  // its file was read as a whole
-    return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, ignore_warning);
+    if (scan_ && scan_->node == input.node) return scan_->stream;
+    if (values_.contains({input.node, input.from})) return nullptr;  // its file was read as a whole
+    return open(input.node, *input.leaf, threads, cache_ != nullptr, ignore_warning);
 }
 
-Value Workbench::fetch(const JobInput& input, JobReport& report) {
-    if (const Value* value = find(input.node, input.from)) return *value;
-    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
+Value Workbench::fetch(const JobInput& input, JobReport& report) const {
+    std::optional<Value> value = values_.find({input.node, input.from});
+    if (!value && cache_ && !input.content.empty()) value = cache_->value(input.content);
     if (!value && input.leaf) {
         value = read_leaf(*input.leaf, ignore_warning);
         if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
     }
     if (!value) {
-        report.lost.push_back(input);
+        report.lost.emplace_back(input.node, input.from);
         throw InputLost{};
     }
-    values_[input.node].push_back({input.from, *value});
     return *value;
 }
 
 std::string path_prefix(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
 
-// The cache: results and values that are stored and found.
+// Results and values that are stored, and found in the cache.
 
 /// Reports the outputs whose values the cache has.
 void Workbench::add_kept(JobReport& report) const {
@@ -344,13 +341,16 @@ void Workbench::add_kept(JobReport& report) const {
         if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
 }
 
-/// The outputs stored under the run key, if the cache has all values that are needed.
+/// The outputs stored under the run key, if the cache has all values that are needed, also for expectations.
 std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::string& run_key,
                                            const JobListener& listener, JobReport& report) const {
     std::optional<StepResult> result = cache_->step(run_key);
     if (!result) return std::nullopt;
     Outputs outputs;
-    for (const std::string& port : work.caching.needed) {
+    std::vector<std::string> needed = work.caching.needed;
+    if (!work.step->expectations.empty()) needed.push_back(work.step->spec.outputs.front().name);
+    for (const std::string& port : needed) {
+        if (outputs.find(port)) continue;
         const ResultOutput* output = result->output(port);
         std::optional<Value> value = output ? cache_->value(output->content) : std::nullopt;
         if (!value) return std::nullopt;
@@ -365,9 +365,10 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
     return outputs;
 }
 
-/// Stores the result, and the values that are worth it.
-void Workbench::store(const Job& job, const JobCaching& caching, const std::string& run_key,
-                      const std::string& path_prefix, double seconds, JobReport& report) {
+/// Stores the result, and the values that are worth it or that other tasks need.
+void Workbench::store(const Job& job, const JobCaching& caching, const std::string& run_key, const Outputs& outputs,
+                      double seconds, JobReport& report) {
+    store_values(job, caching, outputs, caching.inputs_cost + seconds, report);
     if (!uses_cache(caching)) return;
     StepResult& result = report.result;
     const auto* work = std::get_if<StepWork>(&job.work);
@@ -377,30 +378,42 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
     result.metrics = report.node.metrics;
     result.properties = report.node.properties;
     // Files with equal content share the result, so warnings are stored without the file's name.
+    const auto* reading = std::get_if<ReadWork>(&job.work);
+    const std::string prefix = reading ? path_prefix(reading->leaf.file) : "";
     for (const std::string& warning : report.node.warnings)
-        result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
+        result.warnings.push_back(warning.starts_with(prefix) ? warning.substr(prefix.size()) : warning);
     result.doubts = report.node.doubts;
     result.seconds = seconds;
-    store_values(job, caching, caching.inputs_cost + seconds, report);
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 
-void Workbench::store_values(const Job& job, const JobCaching& caching, double cost, JobReport& report) {
+void Workbench::store_values(const Job& job, const JobCaching& caching, const Outputs& outputs, double cost,
+                             JobReport& report) {
     const auto* work = std::get_if<StepWork>(&job.work);
-    for (const auto& [port, value] : values_[job.node]) {
-        // What steps take by name alone, most workflows do not use.
-        const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
-        const bool is_used =
-            !output || !output->by_name || std::ranges::find(caching.needed, port) != caching.needed.end();
+    for (const auto& [port, value] : outputs) {
+        const bool is_needed = std::ranges::find(caching.needed, port) != caching.needed.end();
+        if (!is_needed && !uses_cache(caching)) continue;
         const EncodedValue encoded(value);
-        bool kept = cache_->has_value(encoded.content(), encoded.size());
-        if (!kept && is_used && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
-            const auto start = std::chrono::steady_clock::now();
-            kept = cache_->keep_value(encoded);
-            if (kept) rule_.wrote(encoded.size(), seconds_since(start));
+        bool is_kept = false;
+        if (uses_cache(caching)) {
+            // What steps take by name alone, most workflows do not use.
+            const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
+            const bool is_used = !output || !output->by_name || is_needed;
+            is_kept = cache_->value(encoded.content()).has_value();
+            if (!is_kept && is_used && rule_.is_worth(cost, encoded.size())) {
+                const auto start = std::chrono::steady_clock::now();
+                is_kept = cache_->keep_value(encoded);
+                if (is_kept) rule_.wrote(encoded.size(), seconds_since(start));
+            }
+            if (is_kept) report.kept.push_back(port);
+            report.result.outputs.push_back({port, kind_of(value), encoded.content(), encoded.size()});
         }
-        if (kept) report.kept.push_back(port);
-        report.result.outputs.push_back({port, kind_of(value), encoded.content(), encoded.size()});
+        if (!is_needed || (is_kept && !values_.are_in_memory())) continue;
+        try {
+            values_.put({job.node, port}, encoded);
+        } catch (const Error& error) {
+            throw JobFailure{Cause::output, error};
+        }
     }
 }
 

@@ -24,7 +24,9 @@ constexpr std::chrono::milliseconds between_checks(100);
 
 WorkerProcesses::WorkerProcesses(WorkerProcessSettings settings) : settings_(std::move(settings)) {
     resize(settings_.count);
-    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), {}};
+    const std::string values = scratch_.folder("values").string();
+    values_ = RunValues(values);
+    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), values, {}};
 }
 
 void WorkerProcesses::resize(std::size_t count) {
@@ -44,12 +46,11 @@ void WorkerProcesses::ensure(std::size_t worker) {
     start_.scratch = scratch_.folder(std::to_string(worker)).string();
     slot.is_ready = false;
     slot.channel_closed.reset();
-    slot.forgotten.clear();
     slot.process = std::make_unique<WorkerProcess>(settings_.command);
     slot.process->send(to_message(start_));
 }
 
-void WorkerProcesses::start(std::size_t worker, Job job) {
+bool WorkerProcesses::start(std::size_t worker, Job job) {
     Slot& slot = slots_[worker];
     slot.begun = slot.checked = Clock::now();
     slot.peak_memory = 0;
@@ -58,27 +59,17 @@ void WorkerProcesses::start(std::size_t worker, Job job) {
         ensure(worker);
     } catch (const Error& error) {
         slot.cannot_start = true;
+        if (std::ranges::any_of(slots_, [](const Slot& each) { return !each.cannot_start; })) return false;
         start_failure_ = error;
         slot.job = std::move(job);
-        return;
+        return true;  // wait() reports the failure
     }
     slot.process->read_log();
     slot.process->clear_log();
-    slot.process->send(to_message(JobMessage{job, slot.forgotten}));  // wait() notices if the process has ended
-    slot.forgotten.clear();
+    slot.process->send(to_message(job));  // wait() notices if the process has ended
     slot.job = std::move(job);
+    return true;
 }
-
-void WorkerProcesses::forget(std::size_t worker, std::size_t node) {
-    Slot& slot = slots_[worker];
-    if (!slot.process) return;
-    slot.forgotten.push_back(node);
-    if (slot.job) return;  // sent with the next job
-    slot.process->send(to_message(JobMessage{{}, slot.forgotten}));
-    slot.forgotten.clear();
-}
-
-void WorkerProcesses::replace(std::size_t worker) { slots_[worker].process.reset(); }
 
 void WorkerProcesses::dismiss() {
     for (const Slot& slot : slots_)
@@ -159,8 +150,8 @@ void WorkerProcesses::take_messages(std::size_t worker, const WorkerListener& li
                     slot.begun = Clock::now();
                 }
                 if (message.loading) slot.loading = *message.loading;
-                if (message.progress) listener.on_progress(worker, *message.progress);
-                if (message.warning) listener.on_warning(worker, *message.warning);
+                if (message.progress && slot.job) listener.on_progress(worker, *message.progress);
+                if (message.warning && slot.job) listener.on_warning(worker, *message.warning);
                 if (message.note && std::ranges::find(notes_, *message.note) == notes_.end()) {
                     notes_.push_back(*message.note);
                     if (settings_.on_note) settings_.on_note(*message.note);
@@ -238,19 +229,13 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
 }  // namespace
 
 void WorkerProcesses::take_report(std::size_t worker, const WorkerListener& listener, JobReport report) {
-    Slot& slot = slots_[worker];
     const bool gave_up = report.outcome == Outcome::skipped && report.lost.empty() && !cancelled_;
     if (gave_up)
         return kill(worker, listener, Cause::signal, Error("another program sent SIGTERM to the worker process"),
                     SIGTERM);
     // After these failures the state of the process is uncertain.
     const Cause cause = report.node.failure.cause;
-    const bool is_uncertain = cause == Cause::memory || cause == Cause::exception;
-    if (is_uncertain) {
-        slot.process->read_log();
-        report.node.effort.log = slot.process->log();
-        slot.process.reset();
-    }
+    const bool is_uncertain = cause == Cause::memory || cause == Cause::exception || !report.wear.empty();
     report_end(worker, listener, std::move(report), is_uncertain);
 }
 
@@ -284,11 +269,6 @@ void WorkerProcesses::kill(std::size_t worker, const WorkerListener& listener, C
 
 void WorkerProcesses::report_start_failure(std::size_t worker, const WorkerListener& listener) {
     Slot& slot = slots_[worker];
-    const bool others_work = std::ranges::any_of(slots_, [](const Slot& each) { return !each.cannot_start; });
-    if (others_work) {
-        slot.job.reset();
-        return listener.on_start_failed(worker);
-    }
     JobReport report;
     report.outcome = Outcome::failed;
     report.node.failure = failure_of(*slot.job, Cause::exit, *start_failure_);
@@ -303,19 +283,21 @@ u64 WorkerProcesses::peak_of(const Slot& slot, const ProcessEnd& end) const {
 }
 
 void WorkerProcesses::report_end(std::size_t worker, const WorkerListener& listener, JobReport report,
-                                 bool lost_values) {
+                                 bool ends_process) {
     Slot& slot = slots_[worker];
     if (slot.process) {
         slot.process->read_log();
         report.node.effort.log = slot.process->log();
-        if (lost_values) slot.process.reset();
+        if (ends_process) slot.process.reset();
     }
+    if (!report.wear.empty())
+        report.node.effort.log.push_back(fmt::format("scanmill: the worker is replaced: {}", report.wear));
     if (report.node.effort.seconds == 0)
         report.node.effort.seconds = std::chrono::duration<double>(Clock::now() - slot.begun).count();
     report.node.effort.threads = slot.job->threads;
     report.node.outcome = report.outcome;
     slot.job.reset();
-    listener.on_end(worker, std::move(report), lost_values);
+    listener.on_end(worker, std::move(report));
 }
 
 }  // namespace scanmill

@@ -2,9 +2,9 @@
 #pragma once
 /// Worker processes. A filter that crashes its process affects neither this process nor other workers.
 ///
-/// A process is started for its first job, reused, and replaced when it has ended or replace() is called. A process
-/// that exceeds its job's limit of time or memory is killed. Memory is limited twice: allocations beyond the limit fail
-/// in the process (RLIMIT_DATA), and the resident size is checked several times a second.
+/// A process is started for its first job, reused, and replaced when it has ended or its state is uncertain. A
+/// process that exceeds its job's limit of time or memory is killed. Memory is limited twice: allocations beyond the
+/// limit fail in the process (RLIMIT_DATA), and the resident size is checked several times a second.
 
 #include <deque>
 #include <memory>
@@ -83,9 +83,8 @@ public:
 
     std::size_t size() const override { return slots_.size(); }
     bool has_room(u64 memory_limit) const override;
-    void start(std::size_t worker, Job job) override;
-    void forget(std::size_t worker, std::size_t node) override;
-    void replace(std::size_t worker) override;
+    bool start(std::size_t worker, Job job) override;
+    RunValues& values() override { return values_; }
     void wait(const WorkerListener& listener, std::chrono::milliseconds patience) override;
     void cancel() override;
     /// Starts the first process, so that it is ready when its first job comes.
@@ -105,7 +104,6 @@ private:
         bool cannot_start = false;
         u64 peak_memory = 0;
         std::string loading;  ///< the module that its process is loading; empty: none
-        std::vector<std::size_t> forgotten;  ///< sent with the next job
     };
 
     void ensure(std::size_t worker);
@@ -119,11 +117,12 @@ private:
     void kill(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
     void report_start_failure(std::size_t worker, const WorkerListener& listener);
     u64 peak_of(const Slot& slot, const ProcessEnd& end) const;
-    void report_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
+    void report_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool ends_process);
 
     WorkerProcessSettings settings_;
     WorkerStart start_;
-    ScratchFolder scratch_;  // with one folder per worker
+    ScratchFolder scratch_;  // with one folder per worker, and one for values
+    RunValues values_;
     std::vector<Slot> slots_;
     std::vector<std::string> notes_;
     std::optional<Clock::time_point> cancelled_;

@@ -16,25 +16,21 @@ namespace scanmill {
 struct WorkerListener {
     std::function<void(std::size_t worker, double fraction)> on_progress;
     std::function<void(std::size_t worker, std::string_view text)> on_warning;
-    /// The worker is idle again. `lost_values`: it was replaced and holds no values.
-    std::function<void(std::size_t worker, JobReport report, bool lost_values)> on_end;
-    /// The worker cannot start. It gets no more jobs, and another worker must do this one.
-    std::function<void(std::size_t worker)> on_start_failed;
+    /// The worker is idle again.
+    std::function<void(std::size_t worker, JobReport report)> on_end;
 };
 
-/// Workers, numbered from 0. Each does one job at a time and holds the values that its jobs made or used until
-/// forget().
+/// Workers, numbered from 0. Each does one job at a time. Values pass from job to job through values() and the cache,
+/// so any worker can do any job.
 class Workers {
 public:
     virtual ~Workers() = default;
     virtual std::size_t size() const = 0;
     /// Whether the machine has this memory for one more job, beside what the running jobs may still allocate.
     virtual bool has_room(u64 /*memory_limit*/) const { return true; }
-    /// Pre: the worker is idle.
-    virtual void start(std::size_t worker, Job job) = 0;
-    virtual void forget(std::size_t worker, std::size_t node) = 0;
-    /// Replaces the worker by a new one. Pre: it is idle and holds no value that is needed.
-    virtual void replace(std::size_t /*worker*/) {}
+    /// False if this worker cannot start and another one can; it gets no more jobs then. Pre: the worker is idle.
+    virtual bool start(std::size_t worker, Job job) = 0;
+    virtual RunValues& values() = 0;
     /// Returns after an event, or after the time given. Does not throw.
     virtual void wait(const WorkerListener& listener, std::chrono::milliseconds patience) = 0;
     /// Cancels the running jobs: within two seconds every worker reports its end, as skipped or done.
@@ -45,24 +41,28 @@ public:
 class InProcessWorker : public Workers {
 public:
     InProcessWorker(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, std::function<bool()> is_cancelled)
-        : bench_(library, cache, policy, scratch_.folder("worker")),
+        : bench_(library, cache, policy, values_, scratch_.folder("worker")),
           is_cancelled_(std::move(is_cancelled)) {}
 
     std::size_t size() const override { return 1; }
-    void start(std::size_t, Job job) override { job_ = std::move(job); }
-    void forget(std::size_t, std::size_t node) override { bench_.forget(node); }
+    bool start(std::size_t, Job job) override {
+        job_ = std::move(job);
+        return true;
+    }
+    RunValues& values() override { return values_; }
     void wait(const WorkerListener& listener, std::chrono::milliseconds) override {
         if (!job_) return;
         const JobListener job_listener{[&](double fraction) { listener.on_progress(0, fraction); },
                                        [&](std::string_view text) { listener.on_warning(0, text); }, is_cancelled_};
         JobReport report = bench_.perform(*job_, job_listener);
         job_.reset();
-        listener.on_end(0, std::move(report), false);
+        listener.on_end(0, std::move(report));
     }
     void cancel() override {}
 
 private:
     ScratchFolder scratch_;
+    RunValues values_;
     Workbench bench_;
     std::function<bool()> is_cancelled_;
     std::optional<Job> job_;

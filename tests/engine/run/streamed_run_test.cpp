@@ -71,17 +71,5 @@ TEST_F(StreamedRun, WithoutACache_HandsTheFilterAStream) {
     EXPECT_EQ(logged(), "stream 0.03 u 4\n");
 }
 
-TEST_F(StreamedRun, Forgotten_IsClosed) {
-    prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")});
-    Workbench bench(library_, nullptr, KeepRule::Policy::never, folder_ / "scratch");
-    Job job;
-    job.node = 0;
-    job.work = ReadWork{graph_.nodes[0].leaf, {}};
-    EXPECT_EQ(bench.perform(job, {{}, [](std::string_view) {}, {}}).outcome, Outcome::ok);
-    EXPECT_FALSE(bench.is_empty());
-    bench.forget(0);
-    EXPECT_TRUE(bench.is_empty());
-}
-
 }  // namespace
 }  // namespace scanmill::test

@@ -16,20 +16,22 @@ namespace {
 class TwoBenches : public Workers {
 public:
     TwoBenches(FilterLibrary& library, Cache& cache, KeepRule::Policy policy) {
-        for (const char* name : {"first", "second"}) benches_.emplace_back(library, &cache, policy, scratch_ / name);
+        for (const char* name : {"first", "second"})
+            benches_.emplace_back(library, &cache, policy, values_, scratch_ / name);
     }
     std::size_t size() const override { return benches_.size(); }
-    void start(std::size_t worker, Job job) override {
+    bool start(std::size_t worker, Job job) override {
         steps_of_second += worker == 1 && std::holds_alternative<StepWork>(job.work);
         jobs_[worker] = std::move(job);
+        return true;
     }
-    void forget(std::size_t worker, std::size_t node) override { benches_[worker].forget(node); }
+    RunValues& values() override { return values_; }
     void wait(const WorkerListener& listener, std::chrono::milliseconds) override {
         if (jobs_.empty()) return;
         const auto [worker, job] = *jobs_.rbegin();
         jobs_.erase(worker);
         JobReport report = benches_[worker].perform(job, {[](double) {}, [](std::string_view) {}, {}});
-        listener.on_end(worker, std::move(report), false);
+        listener.on_end(worker, std::move(report));
     }
     void cancel() override {}
 
@@ -37,6 +39,7 @@ public:
 
 private:
     TemporaryFolder scratch_;
+    RunValues values_{std::filesystem::path(scratch_.path())};
     std::deque<Workbench> benches_;
     std::map<std::size_t, Job> jobs_;
 };
@@ -51,7 +54,6 @@ TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
     command.keep_policy = static_cast<int>(keep_);
     WorkerProcesses workers(std::move(command));
     workers.resize(2);
-    settings_.shares_values = true;
     const RunReport there = scanmill::run(library_, graph_, workers, settings_);
     ::unsetenv("SCANMILL_PLUGIN_PATH");
     ASSERT_TRUE(there.outcome() == Outcome::ok) << there.cells[0].failure.whole().what();
@@ -61,16 +63,14 @@ TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
     EXPECT_EQ(remembered("cache"), remembered("other"));
 }
 
-TEST_F(StreamedRun, HelperThatOpenedAScan_GoesOnHelping) {
-    // The first worker's own: two scans, a step on each, and one that brings both together. Whatever the second does is
-    // help, and its scan is opened before the first one's.
+TEST_F(StreamedRun, WorkersShareTheStepsOfACell) {
+    // Two scans, a step on each, and one that brings both together.
     request_.inputs = {{"other", {scan("b.xyz", "0 0 0\n4 4 4\n")}}};
     prepare(
         "  - id: a\n    test-stream: {length: 1 u}\n    in: {points: scan}\n"
         "  - id: b\n    test-stream: {length: 2 u}\n    in: {points: other}\n"
         "  - id: both\n    test-step:\n    in: {points: a, more: [b]}\n",
         {scan("a.xyz")}, "outputs: {'{scan}.ply': both}\n", "{scan: points, other: points}");
-    settings_.shares_values = true;
     TwoBenches workers(library_, *cache_, keep_);
     const RunReport report = scanmill::run(library_, graph_, workers, settings_);
     ASSERT_TRUE(report.outcome() == Outcome::ok) << report.cells[0].failure.whole().what();

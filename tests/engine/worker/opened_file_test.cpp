@@ -45,7 +45,8 @@ protected:
         Job job;
         job.work = WriteWork{folder_ / "mesh.stl", "{}", {}, must_be_closed, {"", 0, "", "", leaf}};
         FilterLibrary library{{}};
-        Workbench bench(library, nullptr, KeepRule::Policy::never, folder_ / "scratch");
+        RunValues values;
+        Workbench bench(library, nullptr, KeepRule::Policy::never, values, folder_ / "scratch");
         return bench.perform(job, {{}, [](std::string_view) {}, {}});
     }
     TemporaryFolder folder_;

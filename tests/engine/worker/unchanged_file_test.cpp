@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/worker/open_scans.hpp"
+#include "scanmill/worker/unchanged_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The cells of a run while it runs: the time that they have used, the tasks that they wait for, and their reports.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scanmill/batch/batch.hpp"
+#include "scanmill/cache/run_values.hpp"
+#include "scanmill/graph/graph.hpp"
+#include "scanmill/worker/job.hpp"
+#include "scanmill/worker/report.hpp"
+
+namespace scanmill {
+
+/// An output file, which several cells may share.
+struct FileToWrite {
+    ValueSlot source;
+    std::filesystem::path file;
+    std::vector<std::size_t> cells;
+    OutputReport report;
+    Failure failure;
+    double seconds = 0;
+    unsigned failures = 0;  ///< attempts that ended with their worker
+};
+
+/// "in step 'x' (file:line:column)" or "while reading 'file'": the frame of the node's errors.
+std::string frame_of(const RunGraph& graph, std::size_t node);
+
+class Cells {
+public:
+    /// Graph, limits and report must outlive it. `on_end` is called when a cell's report is complete.
+    Cells(const RunGraph& graph, const Limits& limits, RunReport& report, std::function<void(std::size_t)> on_end);
+
+    std::vector<FileToWrite>& files() { return files_; }
+    const std::vector<FileToWrite>& files() const { return files_; }
+    const std::vector<std::size_t>& of_node(std::size_t node) const { return cells_of_node_[node]; }
+
+    /// Whether any of these cells has time left.
+    bool have_time(const std::vector<std::size_t>& cells) const;
+    /// Sets the time left of the cell that has the most, or the limit of a step if that is smaller.
+    void limit_time(const std::vector<std::size_t>& cells, Job& job) const;
+    void charge(const std::vector<std::size_t>& cells, double seconds);
+    /// Counts the end of a task, which took `seconds`. Ends the cells that wait for no other.
+    void task_ended(const std::vector<std::size_t>& cells, double seconds);
+    void end_remaining();
+
+private:
+    struct State {
+        std::vector<std::size_t> files;  ///< by the cell's outputs
+        std::size_t tasks_left = 0;
+        bool has_ended = false;
+        bool is_out_of_time = false;
+    };
+
+    void end(std::size_t cell);
+    Failure out_of_time(std::size_t cell) const;
+
+    const RunGraph& graph_;
+    const Limits& limits_;
+    RunReport& report_;
+    std::function<void(std::size_t)> on_end_;
+    std::vector<FileToWrite> files_;
+    std::vector<std::vector<std::size_t>> cells_of_node_;
+    std::vector<State> states_;
+};
+
+}  // namespace scanmill
