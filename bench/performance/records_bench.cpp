@@ -59,11 +59,11 @@ void add_night(RunRecords& records, std::size_t cells) {
             step.scan = record.scan;
             step.plan_key = std::string(64, 'k');
             step.build = std::string(32, 'b');
-            step.origin = "ran";
+            step.origin = Origin::ran;
             step.why = "there is no cache";
-            step.outcome = "ok";
-            step.seconds = step.cpu_seconds = noise(cell, i);
-            step.peak_memory = 100'000'000;
+            step.outcome = Outcome::ok;
+            step.effort.seconds = step.effort.cpu_seconds = noise(cell, i);
+            step.effort.peak_memory = 100'000'000;
             step.threads = step.attempts = 1;
             step.authored = {{"bin-size", "1 %diag"}, {"sharp-angle", "40 deg"}, {"smoothing", "0.5"}};
             step.resolved = {{"bin-size", "0.0123 u"}, {"sharp-angle", "40 deg"}, {"smoothing", "0.5"}};

@@ -115,11 +115,11 @@ TEST_F(Unwatched, MovedFiles_AreInTheEvents) {
     ASSERT_EQ(night("pass").exit_code, 0);
     std::size_t moved = 0;
     for (const Json& event : lines(night("fail", {"--json"}).out))
-        if (event["event"] == "cell-ended" && event.contains("moved")) {
-            ++moved;
-            ASSERT_EQ(event["moved"].size(), 1u);
-            EXPECT_EQ(event["moved"][0]["to"], event["moved"][0]["file"].get<std::string>() + ".previous");
-        }
+        if (event["event"] == "cell-ended")
+            for (const Json& output : event["outputs"]) {
+                ++moved;
+                EXPECT_EQ(output["moved-to"], output["file"].get<std::string>() + ".previous");
+            }
     EXPECT_EQ(moved, 2u);
 }
 

@@ -92,15 +92,15 @@ TEST_F(ReportCommand, ARevokedAcceptance_GivesTheOneBefore) {
 
 TEST_F(ReportCommand, FailedAndDoubtfulCells_DecideTheExitCode) {
     RunDetails doubtful = run_of_one(1, 0.5, rules);
-    doubtful.cells[0].outcome = "doubtful";
+    doubtful.cells[0].outcome = Outcome::doubtful;
     doubtful.cells[0].doubts = {"alpha is 12 times the spacing"};
     record(doubtful, "out", "doubtful");
     EXPECT_EQ(report().exit_code, 0);
     EXPECT_EQ(report({"--strict"}).exit_code, 1);
     EXPECT_THAT(report().out, HasSubstr("doubtful   scans/a.ply [default]: alpha is 12 times the spacing"));
     RunDetails failed = run_of_one(2, 0.5, rules);
-    failed.cells[0].outcome = "failed";
-    failed.cells[0].failure = {"refused", 0, "the file ends too early"};
+    failed.cells[0].outcome = Outcome::failed;
+    failed.cells[0].failure = {Cause::refused, 0, "the file ends too early"};
     record(failed, "out", "failed");
     EXPECT_EQ(report().exit_code, 1);
     // A regression in another cell is the graver news.
@@ -203,7 +203,7 @@ TEST_F(ReportCommand, HostileNames_StayOnTheirLines) {
     RunDetails run = made_run(1, rules);
     for (const std::string& name : {std::string("a b\n\x1b[2J<script>'\".ply"), std::string(200, 'x') + ".ply"}) {
         CellRecord& cell = add_cell(run, "jobs/" + name);
-        cell.outcome = "failed";
+        cell.outcome = Outcome::failed;
         cell.failure.error = "broken '" + name + "'";
     }
     record(run, "out", "failed");

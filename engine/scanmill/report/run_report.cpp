@@ -45,11 +45,8 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
 }
 
 OutputRecord output_record(const OutputReport& report) {
-    return {report.file.string(), std::string(name_of(report.kind)),
-            report.outcome,       report.properties,
-            report.warnings,      report.sha256,
-            report.bytes,         report.moved_to.string(),
-            report.not_moved};
+    return {report.file.string(), std::string(name_of(report.kind)), report.outcome,   report.properties, report.sha256,
+            report.bytes,         report.moved_to.string(),          report.not_moved, report.warnings};
 }
 
 CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report) {

@@ -75,10 +75,10 @@ struct OutputRecord {
     std::string file, kind;
     Outcome outcome = Outcome::skipped;
     Metrics properties;
-    std::vector<std::string> warnings;
-    std::string sha256;
+    std::string sha256{};
     u64 bytes = 0;
-    std::string moved_to, not_moved;
+    std::string moved_to{}, not_moved{};
+    std::vector<std::string> warnings{};
 };
 constexpr auto fields(const OutputRecord*) {
     using R = OutputRecord;
@@ -107,7 +107,7 @@ constexpr auto fields(const CostRecord*) {
 }
 
 struct CellRecord {
-    std::string scan, workflow, variant;
+    std::string workflow, scan, variant;
     Outcome outcome = Outcome::skipped;
     FailureRecord failure;
     double seconds = 0;

@@ -175,8 +175,8 @@ TEST(Comparison, ARuleThatCannotBeApplied_FailsTheCell) {
 
 TEST(Comparison, FailedCells_AreFailedWithTheirReason) {
     RunDetails now = run_of_one(2, 0.5, {{"hausdorff", "+1 %", {}}});
-    now.cells[0].outcome = "failed";
-    now.cells[0].failure = {"time", 0, "time limit exceeded: stopped after 3 s\n  in step 'surface'"};
+    now.cells[0].outcome = Outcome::failed;
+    now.cells[0].failure = {Cause::time, 0, "time limit exceeded: stopped after 3 s\n  in step 'surface'"};
     now.cells[0].outputs[0].moved_to = "/anywhere/out/a-default.ply.previous";
     Comparison comparison = compared(now, run_of_one(1, 0.5));
     EXPECT_EQ(comparison.verdict, Verdict::failed);
@@ -184,7 +184,7 @@ TEST(Comparison, FailedCells_AreFailedWithTheirReason) {
     EXPECT_THAT(comparison.cells[0].reasons, ElementsAre("time limit exceeded: stopped after 3 s"));
     EXPECT_THAT(comparison.cells[0].moved, ElementsAre("a-default.ply.previous"));
     RunDetails before = run_of_one(1, 0.5);
-    before.cells[0].outcome = "failed";
+    before.cells[0].outcome = Outcome::failed;
     EXPECT_THAT(compared(now, before).cells[0].reasons, Contains("it failed in the accepted run, too"));
     const Comparison repaired = compared(run_of_one(2, 0.5), before);
     EXPECT_EQ(repaired.verdict, Verdict::improved);
@@ -193,7 +193,7 @@ TEST(Comparison, FailedCells_AreFailedWithTheirReason) {
 
 TEST(Comparison, DoubtfulCells_AreDoubtfulUnlessTheyRegress) {
     RunDetails now = run_of_one(2, 0.5, {{"hausdorff", "+1 %", {}}});
-    now.cells[0].outcome = "doubtful";
+    now.cells[0].outcome = Outcome::doubtful;
     now.cells[0].doubts = {"alpha is 12 times the spacing"};
     EXPECT_EQ(compared(now, run_of_one(1, 0.5)).verdict, Verdict::doubtful);
     EXPECT_THAT(compare(now, nullptr).cells[0].reasons, ElementsAre("alpha is 12 times the spacing"));
@@ -221,7 +221,7 @@ TEST(Comparison, NewAndMissingCells_AreNeverDropped) {
 
 TEST(Comparison, CellsThatDidNotRun_AreMissing) {
     RunDetails now = run_of_one(2, 0.5);
-    now.cells[0].outcome = "skipped";
+    now.cells[0].outcome = Outcome::skipped;
     const Comparison comparison = compared(now, run_of_one(1, 0.5));
     EXPECT_EQ(comparison.cells[0].verdict, Verdict::missing);
     EXPECT_TRUE(comparison.tripped());
@@ -279,7 +279,7 @@ TEST(Comparison, ChangedHashes_AreListedAndTripOnlyByTheirRule) {
     ASSERT_THAT(listed.cells[0].outputs, SizeIs(1));
     EXPECT_EQ(listed.cells[0].outputs[0].file, "a.ply-default.ply");
     EXPECT_THAT(what_changed(listed), SizeIs(1));
-    now.start.gate = to_json_text({{{"outputs", "exact", {}}}, 1});
+    now.start.gate = {{"outputs", "exact"}};
     const Comparison tripped = compared(now, run_of_one(1, 0.5));
     EXPECT_EQ(tripped.verdict, Verdict::regressed);
     EXPECT_THAT(tripped.cells[0].reasons, ElementsAre("the output a.ply-default.ply changed"));
@@ -406,19 +406,13 @@ TEST(Comparison, NoGate_ListsAndTripsOnlyOnMissingCells) {
     EXPECT_EQ(compared(made_run(2), made_run(1)).verdict, Verdict::passed);
 }
 
-TEST(Comparison, ADamagedGate_IsAnError) {
-    RunDetails now = run_of_one(2, 0.5);
-    now.start.gate = "{";
-    EXPECT_THAT(sentence_of([&] { compare(now, nullptr); }), HasSubstr("JSON"));
-}
-
 TEST(ReproducingCommand, OfABatch_NamesScanAndVariant) {
     RunDetails now = run_of_one(2, 0.9, {{"hausdorff", "+1 %", {}}});
     EXPECT_EQ(compared(now, run_of_one(1, 0.5)).cells[0].command,
               "scanmill batch jobs/nightly.yaml --scan scans/a.ply --only default -o reproduced");
     now.start.seed = 7;
     add_cell(now, "jobs/it's \"b\"\n.ply").workflow = "other";
-    now.cells[1].outcome = "failed";
+    now.cells[1].outcome = Outcome::failed;
     const Comparison comparison = compare(now, nullptr);
     EXPECT_EQ(comparison.cells[1].command,
               "scanmill batch jobs/nightly.yaml --scan $'it\\'s \"b\"\\n.ply' --workflow other --seed 7 --only default "

@@ -35,10 +35,10 @@ Comparison every_verdict() {
     add_cell(now, hostile, "default", 1);
     add_cell(now, "jobs/new.ply");
     CellRecord& failed = add_cell(now, "jobs/failed.ply");
-    failed.outcome = "failed";
-    failed.failure = {"signal", 11, "it crashed on '" + hostile + "'\n  in step 'x'"};
+    failed.outcome = Outcome::failed;
+    failed.failure = {Cause::signal, 11, "it crashed on '" + hostile + "'\n  in step 'x'"};
     CellRecord& doubtful = add_cell(now, "jobs/doubtful.ply", "va|ri`ant");
-    doubtful.outcome = "doubtful";
+    doubtful.outcome = Outcome::doubtful;
     doubtful.doubts = {"]]> is <no> end"};
     return compared(now, before);
 }
@@ -296,7 +296,7 @@ TEST(Markdown, EveryVerdict_KeepsItsTables) {
 
 TEST(Markdown, BackticksInCommands_DoNotEndTheBlock) {
     RunDetails run = made_run(1);
-    add_cell(run, "jobs/a```b.ply").outcome = "failed";
+    add_cell(run, "jobs/a```b.ply").outcome = Outcome::failed;
     EXPECT_THAT(markdown(compare(run, nullptr), "seconds"), AllOf(HasSubstr("````sh\n"), HasSubstr("\n````\n")));
 }
 
@@ -342,7 +342,7 @@ TEST(Csv, EveryNumberOfEveryCell_IsARow) {
     RunDetails run = made_run(3);
     add_cell(run, "jobs/a,\"b\"\nc.ply");
     CellRecord& failed = add_cell(run, "jobs/failed.ply");
-    failed.outcome = "failed";
+    failed.outcome = Outcome::failed;
     failed.nodes.clear();
     failed.outputs.clear();
     failed.seconds = 0;
@@ -363,7 +363,7 @@ TEST(ReportTables, Matrix_ShowsScansAndVariants) {
     add_cell(now, "jobs/a.ply", "fine", 0.5);
     add_cell(now, "jobs/a.ply", "coarse", 0.75);
     add_cell(now, "jobs/b.ply", "fine", 0.25);
-    add_cell(now, "jobs/c.ply", "coarse").outcome = "failed";
+    add_cell(now, "jobs/c.ply", "coarse").outcome = Outcome::failed;
     const ReportTable table = matrix(compared(now, before), "hausdorff", 10);
     EXPECT_THAT(table.headers, ElementsAre("hausdorff (mm)", "fine", "coarse"));
     EXPECT_THAT(table.rows, ElementsAre(ElementsAre("a.ply", "0.5", "0.75 !"), ElementsAre("b.ply", "0.25", "-"),
@@ -377,7 +377,7 @@ TEST(ReportTables, EqualReasonsOfAScan_AreOneRow) {
     RunDetails now = made_run(2);
     for (const char* variant : {"fine", "coarse"}) {
         CellRecord& cell = add_cell(now, "jobs/broken.ply", variant);
-        cell.outcome = "failed";
+        cell.outcome = Outcome::failed;
         cell.failure.error = "the file ends too early";
     }
     const ReportTable table = reason_table(compare(now, nullptr), 10);

@@ -23,7 +23,8 @@ inline RunDetails made_run(std::int64_t id, const std::vector<GateRule>& rules =
     run.start.machine = "a box";
     run.start.threads = 2;
     run.start.jobs = 1;
-    if (!rules.empty()) run.start.gate = to_json_text({rules, 3});
+    for (const GateRule& rule : rules) run.start.gate.emplace_back(rule.metric, rule.text);
+    run.start.repeats = rules.empty() ? 1 : 3;
     return run;
 }
 
@@ -36,8 +37,8 @@ inline CellRecord& add_cell(RunDetails& run, const std::string& scan, const std:
         step.node = run.steps.size() - 1;
         step.label = label;
         step.scan = scan;
-        step.origin = "ran";
-        step.outcome = "ok";
+        step.origin = Origin::ran;
+        step.outcome = Outcome::ok;
         step.plan_key = std::string("key of ") + label;
     }
     StepRecord &surface = run.steps[node + 1], &measure = run.steps[node + 2];
@@ -57,13 +58,13 @@ inline CellRecord& add_cell(RunDetails& run, const std::string& scan, const std:
     cell.workflow = "compare";
     cell.scan = scan;
     cell.variant = variant;
-    cell.outcome = "ok";
+    cell.outcome = Outcome::ok;
     cell.seconds = 1.5;
     cell.nodes = {node, node + 1, node + 2};
     OutputRecord& output = cell.outputs.emplace_back();
     output.file = "/anywhere/out/" + scan.substr(scan.rfind('/') + 1) + "-" + variant + ".ply";
     output.kind = "mesh";
-    output.outcome = "ok";
+    output.outcome = Outcome::ok;
     output.properties = {{{"genus", 1, Unit::count}, {"triangles", 100, Unit::count}}, LengthUnit::millimetre};
     output.sha256 = "aaaaaaaaaaaa";
     output.bytes = 1000;

@@ -159,22 +159,5 @@ TEST(GateRuleCheck, Costs_TakeAShareThatLeavesRoom) {
     EXPECT_THAT(sentence_of([] { parse_cost_tolerance("+x %"); }), HasSubstr("is not a ratio"));
 }
 
-TEST(GateRecord, Json_ReadsBackInOrder) {
-    const Gate gate{{{"hausdorff", "+1 %", {3, 4}}, {"a \"b\".genus", "exact", {}}, {"seconds", "+20 %", {}}}, 3};
-    const Gate read = parse_gate_json(to_json_text(gate));
-    EXPECT_EQ(read, gate) << "positions do not count";
-    EXPECT_EQ(to_json_text({{{"hausdorff", "+1 %", {}}}, 3}), R"({"rules":{"hausdorff":"+1 %"},"repeats":3})");
-    EXPECT_EQ(parse_gate_json(to_json_text(Gate())), Gate());
-}
-
-TEST(GateRecord, OtherTexts_AreRefused) {
-    for (const char* text :
-         {"", "x", "[]", "3", "{}", R"({"rules":{}})", R"({"rules":[],"repeats":1})",
-          R"({"rules":{"a":1},"repeats":1})", R"({"rules":{},"repeats":0})", R"({"rules":{},"repeats":4294967296})",
-          R"({"rules":{},"repeats":-1})", R"({"rules":{},"repeats":"3"})", R"({"rules":{},"repeats":1,"more":2})",
-          R"({"rules":{},"rules":{},"repeats":1})"})
-        EXPECT_FALSE(sentence_of([&] { parse_gate_json(text); }).empty()) << text;
-}
-
 }  // namespace
 }  // namespace scanmill::test

@@ -29,8 +29,18 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 RunStart some_start() {
-    return {"thin",  "thin.yaml", {"scanmill", "run", "a b"},        ~std::uint64_t(0), 4, 2, "0.1.0",
-            "a box", "Eigen 3.4", R"({"rules": {"genus": "exact"}})"};
+    RunStart start;
+    start.workflow = "thin";
+    start.file = "thin.yaml";
+    start.arguments = {"scanmill", "run", "a b"};
+    start.seed = ~std::uint64_t(0);
+    start.threads = 4;
+    start.jobs = 2;
+    start.version = "0.1.0";
+    start.machine = "a box";
+    start.libraries = "Eigen 3.4";
+    start.gate = {{"genus", "exact"}};
+    return start;
 }
 
 StepRecord some_step(std::size_t node) {
@@ -43,21 +53,21 @@ StepRecord some_step(std::size_t node) {
     step.build = "b";
     step.scan = "a \xff.ply";
     step.plan_key = "key";
-    step.origin = "ran";
+    step.origin = Origin::ran;
     step.why = "it is new";
-    step.outcome = "ok";
-    step.seconds = 0.1 + 0.2;
-    step.cpu_seconds = 0.5;
+    step.outcome = Outcome::ok;
+    step.effort.seconds = 0.1 + 0.2;
+    step.effort.cpu_seconds = 0.5;
     step.authored = {{"bin-size", "1 %diag"}};
     step.resolved = {{"bin-size", "0.3 u"}, {"min-points", "1"}};
     step.metrics = {{{"kept", 7, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
     step.properties = {{{"closed", 1, Unit::boolean}}};
     step.warnings = {"one", "two"};
-    step.failure = {"signal", 11, "it crashed"};
-    step.peak_memory = 3'000'000'000;
-    step.threads = 4;
+    step.failure = {Cause::signal, 11, "it crashed"};
+    step.effort.peak_memory = 3'000'000'000;
+    step.effort.threads = 4;
     step.attempts = 2;
-    step.log = {"first line", "last line"};
+    step.effort.log = {"first line", "last line"};
     step.measures = "surface";
     return step;
 }
@@ -73,10 +83,10 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         RunRecords records = RunRecords::append_to(file());
         const std::int64_t run = records.begin(some_start());
         records.add(run, {some_step(0), some_step(2)}, {});
-        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"},
+        CellRecord cell{"thinning", "a.ply", "alpha=1", Outcome::failed, {Cause::time, 0, "what went wrong"},
                         1.5,        {0, 2},  {},        {"a: b"}};
-        cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
-                        {"out/b.ply", "mesh", "failed", {}, "", 0, "out/b.ply.previous"}};
+        cell.outputs = {{"out/a.ply", "mesh", Outcome::ok, {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
+                        {"out/b.ply", "mesh", Outcome::failed, {}, "", 0, "out/b.ply.previous"}};
         cell.truth = "truth/a.stl";
         cell.costs = {{1.5, 2.5, 3'000'000'000}, {0.5, 0.25, 7}};
         records.add(run, {}, {cell});
@@ -101,7 +111,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     const StepRecord& step = run.steps[1];
     EXPECT_EQ(step.node, 2u);
     EXPECT_EQ(step.scan, "a \xff.ply");
-    EXPECT_EQ(step.seconds, 0.1 + 0.2);
+    EXPECT_EQ(step.effort.seconds, 0.1 + 0.2);
     EXPECT_EQ(step.authored, some_step(2).authored);
     EXPECT_EQ(step.resolved, some_step(2).resolved);
     EXPECT_EQ(step.metrics.find("kept")->value, 7);
@@ -109,18 +119,18 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(step.properties.find("closed")->unit, Unit::boolean);
     EXPECT_EQ(step.warnings, some_step(2).warnings);
     EXPECT_EQ(step.workflow, "thinning");
-    EXPECT_EQ(step.failure.cause, "signal");
+    EXPECT_EQ(step.failure.cause, Cause::signal);
     EXPECT_EQ(step.failure.number, 11);
     EXPECT_EQ(step.failure.error, "it crashed");
-    EXPECT_EQ(step.peak_memory, 3'000'000'000);
-    EXPECT_EQ(step.threads, 4u);
+    EXPECT_EQ(step.effort.peak_memory, 3'000'000'000);
+    EXPECT_EQ(step.effort.threads, 4u);
     EXPECT_EQ(step.attempts, 2u);
-    EXPECT_THAT(step.log, ElementsAre("first line", "last line"));
+    EXPECT_THAT(step.effort.log, ElementsAre("first line", "last line"));
     EXPECT_EQ(run.start.jobs, 2u);
     EXPECT_EQ(run.start.libraries, "Eigen 3.4");
     ASSERT_EQ(run.cells.size(), 1u);
     EXPECT_EQ(run.cells[0].workflow, "thinning");
-    EXPECT_EQ(run.cells[0].failure.cause, "time");
+    EXPECT_EQ(run.cells[0].failure.cause, Cause::time);
     EXPECT_EQ(run.cells[0].failure.error, "what went wrong");
     EXPECT_THAT(run.cells[0].nodes, ElementsAre(0, 2));
     EXPECT_EQ(run.cells[0].outputs[0].properties.find("triangles")->value, 12);
@@ -131,7 +141,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     ASSERT_EQ(run.cells[0].costs.size(), 2u);
     EXPECT_EQ(run.cells[0].costs[0].peak_memory, 3'000'000'000);
     EXPECT_EQ(run.cells[0].costs[1].cpu_seconds, 0.25);
-    EXPECT_EQ(run.start.gate, R"({"rules": {"genus": "exact"}})");
+    EXPECT_EQ(run.start.gate, some_start().gate);
     EXPECT_EQ(run.steps[0].measures, "surface");
 }
 
@@ -143,8 +153,9 @@ TEST_F(Records, RunsThatWroteInTurns_AreToldApart) {
         for (auto [records, run] : {std::pair(&one, first), std::pair(&other, second)}) {
             StepRecord step = some_step(node);
             step.warnings = {fmt::format("{}.{}", run, node)};
-            CellRecord cell{"thinning", fmt::format("{}.{}", run, node), "default", "ok", {}, 1, {node}, {}, {}};
-            cell.outputs = {{step.warnings[0], "mesh", "ok", {{{"run", static_cast<double>(run), Unit::count}}}}};
+            CellRecord cell{"thinning", fmt::format("{}.{}", run, node), "default", Outcome::ok, {}, 1, {node}, {}, {}};
+            cell.outputs = {
+                {step.warnings[0], "mesh", Outcome::ok, {{{"run", static_cast<double>(run), Unit::count}}}}};
             cell.costs = {{static_cast<double>(run), 1, 1}};
             records->add(run, {step}, {cell});
         }
@@ -165,125 +176,6 @@ TEST_F(Records, RunsThatWroteInTurns_AreToldApart) {
             EXPECT_EQ(details.cells[node].costs[0].seconds, run);
         }
     }
-}
-
-/// Table → rows. Outcomes that were renamed have their new name.
-using Content = std::map<std::string, std::vector<std::string>>;
-
-std::vector<std::string> texts(SQLite::Database& database, const std::string& sql) {
-    std::vector<std::string> all;
-    SQLite::Statement rows(database, sql);
-    while (rows.executeStep()) {
-        std::string row;
-        for (int i = 0; i < rows.getColumnCount(); ++i) {
-            const std::string text = rows.getColumn(i).getString();
-            row += (i > 0 ? "|" : "") + (text == "done" ? "ok" : text);
-        }
-        all.push_back(row);
-    }
-    return all;
-}
-
-std::map<std::string, std::string> columns_of(SQLite::Database& database) {
-    std::map<std::string, std::string> columns;
-    for (const std::string& table : texts(database, "SELECT name FROM sqlite_master WHERE type = 'table'"))
-        for (const std::string& column : texts(database, "SELECT name FROM pragma_table_info('" + table + "')"))
-            columns[table] += (columns[table].empty() ? "" : ", ") + column;
-    return columns;
-}
-
-Content rows_of(SQLite::Database& database, const std::map<std::string, std::string>& columns) {
-    Content content;
-    for (const auto& [table, names] : columns)
-        content[table] = texts(database, "SELECT " + names + " FROM " + table + " ORDER BY rowid");
-    return content;
-}
-
-/// The files were written by the programs that had such tables. Those of versions 2 and 3 hold a batch with a broken
-/// scan, a warning, a crash and (3) a doubt, the same batch from the cache, and a run that was killed; that of version
-/// 4 also a truth, repeats, acceptances and a failed cell whose earlier output was moved.
-class RecordsOfVersion : public Records, public testing::WithParamInterface<int> {
-protected:
-    RecordsOfVersion() {
-        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(fmt::format("{}/tests/data/records_of_version_{}.sql", test::source_folder(), GetParam())));
-    }
-};
-
-TEST_P(RecordsOfVersion, AreBroughtUpToDate_WithoutLoss) {
-    std::map<std::string, std::string> columns;
-    Content before;
-    {
-        SQLite::Database old(file().string());
-        EXPECT_EQ(old.execAndGet("PRAGMA user_version").getInt(), GetParam());
-        columns = columns_of(old);
-        before = rows_of(old, columns);
-    }
-    std::vector<RunSummary> runs;
-    for (const char* how : {"the first time", "once it is up to date"}) {
-        SCOPED_TRACE(how);
-        const RunRecords records = RunRecords::read(file());
-        runs = records.runs();
-        ASSERT_FALSE(runs.empty());
-        for (const RunSummary& run : runs) {
-            const RunDetails details = records.run(run.id);
-            EXPECT_EQ(details.cells.size(), run.cells);
-            EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(details.cells, "failed", &CellRecord::outcome)),
-                      run.failed);
-        }
-    }
-    SQLite::Database now(file().string());
-    EXPECT_EQ(now.execAndGet("PRAGMA user_version").getInt(), 4);
-    EXPECT_EQ(texts(now, "PRAGMA integrity_check"), std::vector<std::string>{"ok"});
-    EXPECT_EQ(rows_of(now, columns), before);
-    EXPECT_EQ(now.execAndGet("SELECT COUNT(*) FROM run_end WHERE cells IS NULL OR ran IS NULL").getInt(), 0)
-        << "counted once";
-    RunRecords records = RunRecords::append_to(file());
-    EXPECT_EQ(records.begin(some_start()), runs.back().id + 1);
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, RecordsOfVersion, testing::Values(1, 2, 3, 4));
-
-TEST_F(Records, TablesOfVersion3_KeepTheirCountsAndTheKilledRun) {
-    {
-        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(test::source_folder() + "/tests/data/records_of_version_3.sql"));
-    }
-    const std::vector<RunSummary> runs = RunRecords::read(file()).runs();
-    ASSERT_EQ(runs.size(), 3u);
-    const auto counts = [](const RunSummary& run) {
-        return std::vector<std::size_t>{run.cells, run.doubtful, run.failed, run.ran, run.cached};
-    };
-    EXPECT_THAT(counts(runs[0]), ElementsAre(10, 2, 4, 21, 0)) << "as the program that wrote it listed them";
-    EXPECT_THAT(counts(runs[1]), ElementsAre(10, 2, 4, 3, 18));
-    EXPECT_THAT(counts(runs[2]), ElementsAre(6, 0, 2, 13, 0));
-    EXPECT_EQ(runs[1].outcome, "failed");
-    EXPECT_FALSE(runs[2].outcome);
-}
-
-TEST_F(Records, TablesOfTheFirstVersion_AreBroughtUpToDate) {
-    {
-        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        old.exec(content_of(test::source_folder() + "/tests/data/records_of_version_1.sql"));
-    }
-    for (const char* how : {"the first time", "once it is up to date"}) {
-        SCOPED_TRACE(how);
-        const RunRecords records = RunRecords::read(file());
-        ASSERT_EQ(records.runs().size(), 1u);
-        const RunDetails run = records.run(1);
-        EXPECT_EQ(run.summary.failed, 1u);
-        ASSERT_EQ(run.cells.size(), 2u);
-        EXPECT_EQ(run.cells[0].workflow, "quickstart");
-        EXPECT_EQ(run.cells[0].outcome, "ok");
-        EXPECT_EQ(run.steps[1].outcome, "ok");
-        EXPECT_THAT(run.cells[1].failure.error, HasSubstr("bad.xyz"));
-        ASSERT_EQ(run.steps.size(), 5u);
-        EXPECT_EQ(run.steps[0].peak_memory, 0);
-        EXPECT_EQ(run.steps[1].label, "voxel-thin");
-        EXPECT_FALSE(records.last_steps("quickstart", "small.xyz", "voxel-thin").empty());
-    }
-    RunRecords records = RunRecords::append_to(file());
-    EXPECT_EQ(records.begin(some_start()), 2);
 }
 
 TEST_F(Records, RunsAfterEachOther_AreNumbered_AndAKilledOneHasNoEnd) {
@@ -322,19 +214,41 @@ TEST_F(Records, OpenedAgain_AreNotWrittenTo) {
     EXPECT_EQ(content_of(file()), before);
 }
 
-TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
+/// A Scanmill with other fields, older or newer, writes other tables under another number.
+TEST_F(Records, OfAnotherLayout_AreRefusedAndLeftAlone) {
     RunRecords::append_to(file());
-    SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
-    for (const bool append : {false, true})
-        EXPECT_THAT(sentence_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); }),
-                    HasSubstr("tables are of version 99, this one reads up to 4"));
+    for (const int number : {4, 99}) {
+        SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec(fmt::format("PRAGMA user_version = {}", number));
+        const std::string before = content_of(file());
+        for (const bool append : {false, true}) {
+            const Error error = error_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); });
+            EXPECT_THAT(error.sentence(), HasSubstr("another layout"));
+            EXPECT_THAT(error.hint(), HasSubstr("new history"));
+        }
+        EXPECT_EQ(content_of(file()), before);
+    }
+}
+
+TEST_F(Records, Truncated_AreAnErrorThatNamesTheFile) {
+    {
+        RunRecords records = RunRecords::append_to(file());
+        const std::int64_t run = records.begin(some_start());
+        for (std::size_t node = 0; node < 200; ++node) records.add(run, {some_step(node)}, {});
+        records.end(run, "ok", 1);
+    }
+    const std::string whole = content_of(file());
+    for (const std::size_t size : {whole.size() / 2, std::size_t(100), std::size_t(10)}) {
+        folder_.write("records.sqlite", whole.substr(0, size));
+        const auto read = [&] { RunRecords::read(file()).run(1); };
+        EXPECT_THAT(sentence_of(read), HasSubstr("records.sqlite")) << size;
+    }
 }
 
 TEST_F(Records, ARunAfterAnotherOfEqualNodes_CountsEachNodeOnce) {
     RunRecords records = RunRecords::append_to(file());
     const std::int64_t run = records.begin(some_start());
     StepRecord cached = some_step(0), again = some_step(0), other = some_step(1);
-    cached.origin = other.origin = "cached";
+    cached.origin = other.origin = Origin::cached;
     records.add(run, {cached, again, other}, {});
     EXPECT_EQ(records.summary(run).ran, 1u) << "its cached value was lost";
     EXPECT_EQ(records.summary(run).cached, 1u);
@@ -560,7 +474,7 @@ TEST_F(Run, Recorder_WritesDoubts) {
     EXPECT_EQ(run.summary.outcome, "doubtful");
     EXPECT_EQ(run.summary.doubtful, 1u);
     EXPECT_EQ(run.summary.failed, 0u);
-    EXPECT_EQ(run.cells[0].outcome, "doubtful");
+    EXPECT_EQ(run.cells[0].outcome, Outcome::doubtful);
     EXPECT_THAT(run.cells[0].doubts, ElementsAre("test-step: was asked to doubt"));
 }
 

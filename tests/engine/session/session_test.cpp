@@ -25,7 +25,7 @@ protected:
         settings.is_cancelled = is_cancelled_;
         Session session(std::move(settings), cache);
         session.on_warning([&](std::string text) { warnings_.push_back(text); });
-        SessionTask task{"nightly", "b.yaml", graph_, {}, R"({"rules": {"seconds": "+20 %"}})", repeats};
+        SessionTask task{"nightly", "b.yaml", graph_, {}, {{{"seconds", "+20 %", {}}}, repeats}};
         return session.run(task, 0, library_, {}, observers, [](const RunStarted&) {});
     }
     RunDetails recorded(std::int64_t run = 1) const {
@@ -55,7 +55,7 @@ TEST_F(SessionRun, Costs_AreMeasuredInEveryPass_AndAddUpTheStepsOfTheCell) {
     EXPECT_EQ(counter.nodes, 4) << "events come from the first pass only";
     EXPECT_THAT(counter.started, ElementsAre(std::pair(2u, 3u), std::pair(3u, 3u)));
     const RunDetails run = recorded();
-    EXPECT_EQ(run.start.gate, R"({"rules": {"seconds": "+20 %"}})");
+    EXPECT_EQ(run.start.gate, (Texts{{"seconds", "+20 %"}}));
     ASSERT_THAT(run.cells, SizeIs(2));
     EXPECT_THAT(run.steps, SizeIs(4)) << "steps are recorded once";
     for (const CellRecord& cell : run.cells) {
@@ -64,8 +64,8 @@ TEST_F(SessionRun, Costs_AreMeasuredInEveryPass_AndAddUpTheStepsOfTheCell) {
         std::int64_t memory = 0;
         for (const StepRecord& step : run.steps)
             if (step.scan == cell.scan) {
-                seconds += step.seconds;
-                memory = std::max(memory, step.peak_memory);
+                seconds += step.effort.seconds;
+                memory = std::max(memory, step.effort.peak_memory);
             }
         EXPECT_EQ(cell.costs[0].seconds, seconds);
         EXPECT_EQ(cell.costs[0].peak_memory, memory);
