@@ -26,7 +26,7 @@ paper: release data ## make docs/bernardini-1997.md: every stage of the paper's 
 	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
 
 test: dev data ## build with assertions on and run every test
-	ctest --preset dev -j $(jobs)
+	tools/test.sh dev -j $(jobs)
 
 deps: ## install the Debian packages that the build needs
 	tools/deps.sh
@@ -41,7 +41,7 @@ release dev: deps
 asan tsan: deps data ## (make asan, make tsan) build and run the tests under sanitizers
 	cmake --preset $@ >/dev/null
 	cmake --build --preset $@ -j $(jobs)
-	ctest --preset $@ -j $(jobs)
+	tools/test.sh $@ -j $(jobs)
 
 bench: deps ## measure the speed of Scanmill: reading, thinning, tetrahedra and solids, engine overhead
 	tools/deps.sh bench

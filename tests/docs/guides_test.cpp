@@ -35,7 +35,7 @@ TEST(Guide, UserGuide_PrintsWhatItShows) {
 
 TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "skipped: the guide builds without sanitizers, which a module must share with the program";
+    GTEST_SKIP() << "the guide builds without sanitizers, which a module must share with the program";
 #endif
     const TemporaryFolder folder;
     const fs::path prefix = folder / "home/scanmill";

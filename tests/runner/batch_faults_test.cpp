@@ -161,7 +161,7 @@ TEST_F(Faults, CellsThatDoNotFitBesideEachOther_RunOneAfterTheOther) {
 
 TEST_F(Faults, ManyTinyScans_NeedNoMoreMemoryThanFew) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "skipped: a sanitizer keeps what was given back";
+    GTEST_SKIP() << "a sanitizer keeps what was given back";
 #endif
     write_workflow("1");
     write_scans("scan", 200);

@@ -62,7 +62,7 @@ TEST_F(Storage, ReadOnlyCache_WarnsOnceAndIsRead) {
     unprivileged.without_rights = true;
     const ProgramResult result =
         scanmill_program({"batch", "b.yaml", "-o", "out", "-j", "2", "--cache", "locked"}, unprivileged);
-    if (result.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
+    if (result.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(outputs().size(), 8u);
     EXPECT_THAT(result.err, HasSubstr("does not store new results"));
@@ -151,7 +151,7 @@ TEST_F(Storage, RecordsOnAReadOnlyDisk_AreRead_AlsoOfAnOlderVersion) {
         const ProgramResult runs = scanmill_program({"runs", "out", "--json"}, unprivileged);
         const ProgramResult batch = scanmill_program({"batch", "b.yaml", "-o", "out"}, unprivileged);
         std::filesystem::permissions(folder_ / "out", perms::all);
-        if (runs.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
+        if (runs.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
         EXPECT_EQ(runs.exit_code, 0) << runs.err;
         EXPECT_EQ(Json::parse(runs.out)["runs"].size(), 1u);
         EXPECT_EQ(content_of(folder_ / "out/scanmill.sqlite"), before);

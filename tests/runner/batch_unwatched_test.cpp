@@ -186,7 +186,7 @@ TEST_F(Unwatched, FolderThatBecameReadOnly_IsAWarning) {
     const ProgramResult result =
         scanmill_program({"batch", "b.yaml", "-o", "out", "--no-cache", "-j", "1"}, unprivileged);
     std::filesystem::permissions(folder_ / "out/sub", perms::owner_all);
-    if (result.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
+    if (result.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
     EXPECT_EQ(result.exit_code, 1) << result.err;
     EXPECT_THAT(result.err, HasSubstr("a file of an earlier run is still there: '"));
     EXPECT_TRUE(exists("sub/scan_01.ply"));

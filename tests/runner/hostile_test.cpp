@@ -122,7 +122,7 @@ TEST_F(Hostile, OutputFolderWithoutRights_IsReportedBeforeAnyStepRuns) {
     const ProgramResult below = run({"run", "w.yaml", "scan.xyz", "-o", "out/below"}, unprivileged);
     fs::permissions(folder_.path(), fs::perms::owner_all);
     fs::permissions(folder_ / "out", fs::perms::owner_all);
-    if (ran.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
+    if (ran.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
     expect_refused(ran, 2, "Permission denied");
     expect_refused(below, 2, "Permission denied");
 }

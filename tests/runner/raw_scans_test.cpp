@@ -175,7 +175,7 @@ TEST_F(RawScans, CleanModelsAndTheScansOfTheDemo_AreNotDoubtful) {
     for (const char* name :
          {"points_3/kitten.xyz", "points_3/ball.ply", "meshes/bunny00.off", "meshes/fandisk_large.off"})
         if (const auto path = fetched_data(name)) scans.push_back(path->string());
-    if (scans.empty()) GTEST_SKIP() << "skipped: no collection";
+    if (scans.empty()) GTEST_SKIP() << missing_data("meshes and points_3");
     for (const json& cell : cells_of(shipped("quickstart.yaml"), scans)) EXPECT_EQ(cell.at("outcome"), "ok") << cell;
 }
 

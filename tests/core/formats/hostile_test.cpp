@@ -147,7 +147,7 @@ int accepted_under_a_tight_limit() {
 
 TEST(Readers_BrokenFile, TakesNoMemoryForWhatItPromises) {
 #ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "skipped: a sanitizer's shadow needs more address space than the limit leaves";
+    GTEST_SKIP() << "a sanitizer's shadow needs more address space than the limit leaves";
 #endif
     EXPECT_EXIT(::_exit(accepted_under_a_tight_limit()), testing::ExitedWithCode(0), "");
 }

@@ -48,7 +48,7 @@ TEST_F(MappedFileMemory, BytesTouchedHereAndThere_LeaveNothingWhenGivenBack) {
     volatile char sum = 0;
     for (std::size_t at = 700'000; at < size; at += step) sum = static_cast<char>(sum + file.bytes()[at]);
     const std::optional<std::size_t> touched = resident_of(path_);
-    if (!touched) GTEST_SKIP() << "skipped: the system does not report the resident pages of a file";
+    if (!touched) GTEST_SKIP() << "the system does not report the resident pages of a file";
     EXPECT_GT(*touched, 0u);
     for (std::size_t at = 700'000; at < size; at += step) file.release(file.bytes().substr(at, 1));
     EXPECT_EQ(resident_of(path_), 0u) << "of " << *touched << " bytes";
@@ -61,7 +61,7 @@ TEST_F(MappedFileMemory, APartThatWasFetched_LeavesNothingWhenGivenBack) {
     volatile char last = part.back();  // where fetching is not to be had
     static_cast<void>(last);
     const std::optional<std::size_t> fetched = resident_of(path_);
-    if (!fetched) GTEST_SKIP() << "skipped: the system does not report the resident pages of a file";
+    if (!fetched) GTEST_SKIP() << "the system does not report the resident pages of a file";
     EXPECT_GT(*fetched, 0u);
     file.release(part);
     EXPECT_EQ(resident_of(path_), 0u) << "of " << *fetched << " bytes";

@@ -70,7 +70,7 @@ TriangleMesh solid_of(const PointCloud& points, double error) {
 
 TEST_P(APatchSolid, OfAScan_HasOneClosedSheetWithoutIntersections) {
     const auto path = GetParam().source(GetParam().name);
-    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().name;
+    if (!path) GTEST_SKIP() << missing_data(GetParam().name);
     const auto points = read_points(*path);
     const TriangleMesh light = solid_of(*points, GetParam().error);
     for (const bool is_fitted : {false, true}) {

@@ -56,7 +56,7 @@ TEST(AlphaSolidDoubts, PointsThroughoutABall_AreADoubtAboutTheMesh) {
 class AlphaSolidDoubtsOfModel : public testing::TestWithParam<Model> {};
 TEST_P(AlphaSolidDoubtsOfModel, AreNone) {
     const auto path = found(GetParam());
-    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+    if (!path) GTEST_SKIP() << missing_data(GetParam().file);
     for (const Doubt& doubt : doubts_of(*read_points(*path))) ADD_FAILURE() << doubt.text;
 }
 INSTANTIATE_TEST_SUITE_P(Dense, AlphaSolidDoubtsOfModel, testing::ValuesIn(dense_models));

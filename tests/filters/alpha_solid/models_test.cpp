@@ -46,7 +46,7 @@ class AlphaSolidOfModel : public testing::TestWithParam<Model> {
 protected:
     void SetUp() override {
         const auto path = found(GetParam());
-        if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+        if (!path) GTEST_SKIP() << missing_data(GetParam().file);
         const MeshTopology model = topology(*read_mesh(*path));
         ASSERT_TRUE(model.closed);
         ASSERT_EQ(model.components, 1u);
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfSparseModel,
 class AlphaSolidOfOpenModel : public testing::TestWithParam<Model> {};
 TEST_P(AlphaSolidOfOpenModel, IsASolidWithADoubtfulAlpha) {
     const auto path = found(GetParam());
-    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+    if (!path) GTEST_SKIP() << missing_data(GetParam().file);
     const Reconstruction result = reconstructed(*path);
     expect_promised(result.solid, topology(result.solid.mesh));
     EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("times the boundary's median edge")));

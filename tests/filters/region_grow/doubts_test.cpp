@@ -61,7 +61,7 @@ TEST(RegionGrowDoubts, TwoScales_AreTwoClosedSurfaces) {
 class RegionGrowDoubtsOfModel : public testing::TestWithParam<Model> {};
 TEST_P(RegionGrowDoubtsOfModel, AreNone) {
     const auto path = found(GetParam());
-    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+    if (!path) GTEST_SKIP() << missing_data(GetParam().file);
     EXPECT_THAT(doubts_about(*read_points(*path)), IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(Dense, RegionGrowDoubtsOfModel, testing::ValuesIn(dense_models));

@@ -18,7 +18,7 @@ class SculptOfModel : public testing::TestWithParam<Model> {};
 
 TEST_P(SculptOfModel, IsAClosedSurfaceOfItsGenusThatDoesNotIntersectItself) {
     const auto path = found(GetParam());
-    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+    if (!path) GTEST_SKIP() << missing_data(GetParam().file);
     const AlphaSolidResult solid = solid_of(tets_of(*read_points(*path)));
     const SculptResult result = sculpted(solid.tets, {}, 2);
     const MeshTopology found = topology(result.mesh);
