@@ -24,8 +24,6 @@ const std::vector<std::string> filters{"alpha-solid", "crop",         "delaunay"
                                        "features",    "merge",        "outlier-removal", "region-grow",
                                        "sculpt",      "virtual-scan", "voxel-thin"};
 
-std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
-
 TEST(Command, Help_GoesToStdoutAndIsNoError) {
     const ProgramResult help = scanmill_program({"--help"});
     EXPECT_EQ(help.exit_code, 0);
@@ -41,28 +39,28 @@ TEST(Command, Help_GoesToStdoutAndIsNoError) {
 TEST(Command, Version_IsPrinted) { EXPECT_THAT(scanmill_program({"--version"}).out, HasSubstr("scanmill 0.")); }
 
 TEST(Command, BadArguments_EndWith2AndAHint) {
-    for (const std::vector<std::string>& arguments :
-         std::vector<std::vector<std::string>>{{},
-                                               {"frobnicate"},
-                                               {"run"},
-                                               {"show"},
-                                               {"show", "no-such-filter"},
-                                               {"check", "--format", "xml", "x"},
-                                               {"run", "no-such-workflow.yaml", "x.ply"},
-                                               {"run", quickstart()},
-                                               {"run", quickstart(), "x.ply", "--unit", "yard"},
-                                               {"run", quickstart(), "x.ply", "--set", "bin-size"},
-                                               {"run", quickstart(), "x.ply", "--set", "nothing=1"},
-                                               {"run", quickstart(), "x.ply", "--only", "nothing"},
-                                               {"run", quickstart(), "x.ply", "--until", "nothing"},
-                                               {"run", quickstart(), "x.ply", "--in", "nothing=x"},
-                                               {"run", quickstart(), "x.ply", "--seed", "-1"},
-                                               {"run", quickstart(), "x.ply", "--seed", "010"},
-                                               {"run", quickstart(), "x.ply", "--seed", "18446744073709551616"},
-                                               {"run", quickstart(), "x.ply", "--threads", "two"},
-                                               {"run", quickstart(), "x.ply", "-o", ""},
-                                               {"run", quickstart(), "x.ply", "-o", quickstart() + "/out"},
-                                               {"convert", "a"}}) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {},
+             {"frobnicate"},
+             {"run"},
+             {"show"},
+             {"show", "no-such-filter"},
+             {"check", "--format", "xml", "x"},
+             {"run", "no-such-workflow.yaml", "x.ply"},
+             {"run", shipped("quickstart.yaml")},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--unit", "yard"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--set", "bin-size"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--set", "nothing=1"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--only", "nothing"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--until", "nothing"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--in", "nothing=x"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--seed", "-1"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--seed", "010"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--seed", "18446744073709551616"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--threads", "two"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "-o", ""},
+             {"run", shipped("quickstart.yaml"), "x.ply", "-o", shipped("quickstart.yaml") + "/out"},
+             {"convert", "a"}}) {
         const ProgramResult result = scanmill_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(arguments);
         EXPECT_THAT(result.out, IsEmpty());
@@ -187,12 +185,14 @@ outputs:
 }
 
 TEST(Command, CheckPlan_ShowsTheWiringInThreeForms) {
-    const ProgramResult text = scanmill_program({"check", "--plan", quickstart()});
+    const ProgramResult text = scanmill_program({"check", "--plan", shipped("quickstart.yaml")});
     EXPECT_EQ(text.exit_code, 0);
     EXPECT_THAT(text.out,
                 AllOf(HasSubstr("points <- scan"), HasSubstr("tets <- delaunay"), HasSubstr("{scan}.stl <- surface")));
-    EXPECT_THAT(scanmill_program({"check", "--plan", "--format", "dot", quickstart()}).out, HasSubstr("digraph"));
-    const json plan = json::parse(scanmill_program({"check", "--plan", "--format", "json", quickstart()}).out);
+    EXPECT_THAT(scanmill_program({"check", "--plan", "--format", "dot", shipped("quickstart.yaml")}).out,
+                HasSubstr("digraph"));
+    const json plan =
+        json::parse(scanmill_program({"check", "--plan", "--format", "json", shipped("quickstart.yaml")}).out);
     EXPECT_EQ(plan.at("files").at(0).at("plan").at("steps").size(), 5u);
 }
 

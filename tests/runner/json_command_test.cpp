@@ -17,17 +17,15 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
-
 TEST(Json, BadRequests_AreAnErrorObjectAndASentence) {
-    for (const std::vector<std::string>& arguments :
-         std::vector<std::vector<std::string>>{{"run", "--json"},
-                                               {"run", quickstart(), "--json"},
-                                               {"run", "no-such-workflow.yaml", "x.ply", "--json"},
-                                               {"run", quickstart(), "x.ply", "--unit", "yard", "--json"},
-                                               {"run", quickstart(), "x.ply", "--only", "nothing", "--json"},
-                                               {"show", "no-such-filter", "--json"},
-                                               {"list", "--json", "--frobnicate"}}) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"run", "--json"},
+             {"run", shipped("quickstart.yaml"), "--json"},
+             {"run", "no-such-workflow.yaml", "x.ply", "--json"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--unit", "yard", "--json"},
+             {"run", shipped("quickstart.yaml"), "x.ply", "--only", "nothing", "--json"},
+             {"show", "no-such-filter", "--json"},
+             {"list", "--json", "--frobnicate"}}) {
         const ProgramResult result = scanmill_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments[0];
         const json answer = json::parse(result.out);
@@ -68,7 +66,7 @@ TEST(Json, ShowExample_CarriesTheWorkflow) {
 }
 
 TEST(Json, PlanFormatWithoutPlan_IsRefused) {
-    const ProgramResult result = scanmill_program({"check", quickstart(), "--format", "json"});
+    const ProgramResult result = scanmill_program({"check", shipped("quickstart.yaml"), "--format", "json"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr("--plan"));
 }

@@ -24,8 +24,6 @@ using testing::Contains;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-std::string shipped(const std::string& name) { return test::source_folder() + "/workflows/" + name; }
-
 class RawScans : public testing::Test {
 protected:
     /// The report's cells. `arguments` follow the workflow.

@@ -28,8 +28,6 @@ void write_sphere(const TemporaryFolder& folder, const std::string& name) {
     ASSERT_EQ(made.exit_code, 0) << made.err;
 }
 
-std::string quickstart() { return test::source_folder() + "/workflows/quickstart.yaml"; }
-
 TEST(RunCommand, ShippedWorkflowsAndBatches_PassCheck) {
     for (const auto& file : std::filesystem::directory_iterator(test::source_folder() + "/workflows")) {
         if (file.path().extension() != ".yaml" || file.path().filename() == "nightly.yaml") continue;  // wants its data
@@ -95,8 +93,9 @@ TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
 TEST(RunCommand, Run_WritesAClosedMeshAndATable) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran = scanmill_program(
-        {"run", quickstart(), "ball.ply", "--set", "bin-size=1 %diag", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", shipped("quickstart.yaml"), "ball.ply", "--set", "bin-size=1 %diag", "-o", "out"},
+                         {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_THAT(ran.out, AllOf(HasSubstr("kept"), HasSubstr("triangles"), HasSubstr("out/ball.stl"), HasSubstr("yes")));
     const json info = json::parse(scanmill_program({"info", "--json", (folder / "out/ball.stl").string()}).out);
@@ -107,8 +106,8 @@ TEST(RunCommand, Run_WritesAClosedMeshAndATable) {
 TEST(RunCommand, RunJson_IsJsonWithKeysMetricsAndFiles) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran =
-        scanmill_program({"run", quickstart(), "ball.ply", "--json", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program({"run", shipped("quickstart.yaml"), "ball.ply", "--json", "-o", "out"},
+                                               {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json report = json::parse(ran.out);
     EXPECT_EQ(report.at("scanmill"), 1);
@@ -123,7 +122,7 @@ TEST(RunCommand, RunTwiceWithAnyThreads_WritesEqualBytes) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     for (const char* threads : {"1", "2"})
-        ASSERT_EQ(scanmill_program({"run", quickstart(), "ball.ply", "--threads", threads, "-o", threads},
+        ASSERT_EQ(scanmill_program({"run", shipped("quickstart.yaml"), "ball.ply", "--threads", threads, "-o", threads},
                                    {.folder = folder.path()})
                       .exit_code,
                   0);
@@ -134,8 +133,8 @@ TEST(RunCommand, RunTwiceWithAnyThreads_WritesEqualBytes) {
 TEST(RunCommand, DryRun_WritesNothing) {
     const TemporaryFolder folder;
     folder.write("a.xyz", "0 0 0\n1 0 0\n");
-    const ProgramResult ran =
-        scanmill_program({"run", quickstart(), "a.xyz", "--dry-run", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program({"run", shipped("quickstart.yaml"), "a.xyz", "--dry-run", "-o", "out"},
+                                               {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 0);
     EXPECT_THAT(ran.out, HasSubstr("out/a.stl"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
@@ -145,8 +144,9 @@ TEST(RunCommand, OneBadScanAmongGoodOnes_FailsAloneWith1) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     folder.write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
-    const ProgramResult ran = scanmill_program(
-        {"run", quickstart(), "flat.xyz", "missing.ply", "ball.ply", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", shipped("quickstart.yaml"), "flat.xyz", "missing.ply", "ball.ply", "-o", "out"},
+                         {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err,
                 AllOf(HasSubstr("on scan 'flat.xyz'"), HasSubstr("in step 'delaunay'"), HasSubstr("missing.ply")));
@@ -159,8 +159,8 @@ TEST(RunCommand, TwoScansOfOneName_AreRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
     folder.write("b/s.xyz", "0 0 0\n2 0 0\n");
-    const ProgramResult ran =
-        scanmill_program({"run", quickstart(), "a/s.xyz", "b/s.xyz", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program({"run", shipped("quickstart.yaml"), "a/s.xyz", "b/s.xyz", "-o", "out"},
+                                               {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 2);
     EXPECT_THAT(ran.err, AllOf(HasSubstr("a/s.xyz"), HasSubstr("b/s.xyz"), HasSubstr("would both write")));
 }
@@ -180,7 +180,8 @@ TEST(RunCommand, Output_NeverReplacesAnInput) {
 TEST(RunCommand, AbsoluteLengthOnAScanOfUnknownUnit_SaysHowToDeclareIt) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const std::vector<std::string> run{"run", quickstart(), "ball.ply", "--set", "bin-size=20 um", "-o", "out"};
+    const std::vector<std::string> run{"run", shipped("quickstart.yaml"), "ball.ply", "--set", "bin-size=20 um", "-o",
+                                       "out"};
     const ProgramResult unknown = scanmill_program(run, {.folder = folder.path()});
     EXPECT_EQ(unknown.exit_code, 1);
     EXPECT_THAT(unknown.err, AllOf(HasSubstr("--unit mm"), HasSubstr("unit: mm")));
@@ -193,7 +194,7 @@ TEST(RunCommand, SaveAndUntil_WriteAndStopAtAStep) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     const ProgramResult ran = scanmill_program(
-        {"run", quickstart(), "ball.ply", "--save", "voxel-thin", "--until", "voxel-thin", "-o", "out"},
+        {"run", shipped("quickstart.yaml"), "ball.ply", "--save", "voxel-thin", "--until", "voxel-thin", "-o", "out"},
         {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.voxel-thin.ply"));
@@ -224,8 +225,8 @@ TEST(RunCommand, Save_WritesEveryKindInItsFirstFormat) {
 TEST(RunCommand, RealScan_ThroughTheQuickstart) {
     SCANMILL_REAL_SCAN(kitten, fetched_data, "points_3/kitten.xyz");
     const TemporaryFolder folder;
-    const ProgramResult ran =
-        scanmill_program({"run", quickstart(), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program(
+        {"run", shipped("quickstart.yaml"), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json properties = json::parse(ran.out).at("cells").at(0).at("outputs").at(0).at("properties");
     EXPECT_EQ(properties.at("closed"), true);

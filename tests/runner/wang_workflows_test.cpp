@@ -20,8 +20,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string shipped(const std::string& name) { return test::source_folder() + "/workflows/" + name; }
-
 json content(const fs::path& file) { return json::parse(std::ifstream(file)); }
 
 /// A virtual scan of the shape, as NAME.ply in the folder.

@@ -29,6 +29,8 @@ const std::string& source_folder() {
     return folder;
 }
 
+std::string shipped(const std::string& name) { return source_folder() + "/workflows/" + name; }
+
 const std::string& program_file() {
     static const std::string file = build_folder() + "/bin/scanmill";
     return file;

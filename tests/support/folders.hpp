@@ -10,6 +10,8 @@ namespace scanmill::test {
 const std::string& build_folder();
 /// The sources that the build was configured for, from the file `source-folder.txt` of the build folder.
 const std::string& source_folder();
+/// A workflow of the product.
+std::string shipped(const std::string& name);
 /// The program `scanmill`.
 const std::string& program_file();
 /// The filters of the product.

@@ -11,11 +11,10 @@
 
 #include "scanmill/base/random.hpp"
 #include "scanmill/data/quantity.hpp"
+#include "support/numbers.hpp"
 
 namespace scanmill::test {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The number, by its bits; fails when the text is none.
 std::uint64_t bits_of(std::string_view text) {

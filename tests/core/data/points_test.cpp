@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scanmill/base/random.hpp"
+#include "support/numbers.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 
@@ -14,9 +15,6 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST(PointGather, Rows_BringTheirColumnsAndTheFrame) {
     PointCloud cloud = cloud_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "scanmill/formats/files.hpp"
+#include "support/numbers.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
@@ -17,9 +18,6 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::ElementsAre, ::testing::IsEmpty;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<Vec3> positions_of(const PointCloud& cloud) { return {cloud.positions.begin(), cloud.positions.end()}; }
 

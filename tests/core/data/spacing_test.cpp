@@ -9,13 +9,12 @@
 #include <limits>
 
 #include "scanmill/formats/files.hpp"
+#include "support/numbers.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Distance from every point to the nearest other one, sorted.
 std::vector<double> nearest_distances(std::span<const Vec3> points) {
@@ -82,7 +81,6 @@ TEST(PointSpacing, Duplicates_AreAtDistanceZero) {
 }
 
 TEST(PointSpacing, NonFinitePoints_ArePassedOver) {
-    const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(spacing({{nan, 0, 0}, {0, 0, 0}, {0, infinity, 0}, {0, 0, 2}, {0, 0, nan}}), 2);
 }
 

@@ -12,7 +12,7 @@
 namespace scanmill::test {
 namespace {
 
-ParameterSpec spec_of(ParameterType type) {
+ParameterSpec plain_spec(ParameterType type) {
     ParameterSpec spec;
     spec.name = "x";
     spec.type = type;
@@ -20,7 +20,7 @@ ParameterSpec spec_of(ParameterType type) {
     return spec;
 }
 
-ParameterValue read(ParameterType type, const std::string& text) { return parse(spec_of(type), {{text}, false}); }
+ParameterValue read(ParameterType type, const std::string& text) { return parse(plain_spec(type), {{text}, false}); }
 std::string refusal(ParameterType type, const std::string& text) {
     return sentence_of([&] { read(type, text); });
 }

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 template <class Action>
-std::string error_of(Action&& action) {
+std::string report_of(Action&& action) {
     try {
         action();
     } catch (const Error& error) {
@@ -36,22 +36,22 @@ Value one_triangle() {
 
 TEST(ReadFile_Refuses, WhatIsNoReadableFile) {
     const TemporaryFolder folder;
-    EXPECT_THAT(error_of([&] { read_file(folder / "none.ply"); }), HasSubstr("none.ply': there is no such file"));
+    EXPECT_THAT(report_of([&] { read_file(folder / "none.ply"); }), HasSubstr("none.ply': there is no such file"));
     put_file(folder / "file", "x");
-    EXPECT_THAT(error_of([&] { read_file(folder / "file/none.ply"); }), HasSubstr("there is no such file"));
-    EXPECT_THAT(error_of([&] { read_file(folder.path()); }), HasSubstr("is a folder"));
+    EXPECT_THAT(report_of([&] { read_file(folder / "file/none.ply"); }), HasSubstr("there is no such file"));
+    EXPECT_THAT(report_of([&] { read_file(folder.path()); }), HasSubstr("is a folder"));
     put_file(folder / "empty.ply", "");
-    EXPECT_THAT(error_of([&] { read_file(folder / "empty.ply"); }), HasSubstr("is empty"));
+    EXPECT_THAT(report_of([&] { read_file(folder / "empty.ply"); }), HasSubstr("is empty"));
     ASSERT_EQ(::mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
-    EXPECT_THAT(error_of([&] { read_file(folder / "pipe.ply"); }), HasSubstr("is not a regular file"));
+    EXPECT_THAT(report_of([&] { read_file(folder / "pipe.ply"); }), HasSubstr("is not a regular file"));
 }
 
 TEST(ReadFile_Refuses, WhatWeMayNotRead) {
-    if (::geteuid() == 0) GTEST_SKIP() << "skipped: root may read everything";
+    if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
     const TemporaryFolder folder;
     put_file(folder / "secret.ply", "ply\n");
     fs::permissions(folder / "secret.ply", fs::perms::none);
-    EXPECT_THAT(error_of([&] { read_file(folder / "secret.ply"); }), HasSubstr("no permission"));
+    EXPECT_THAT(report_of([&] { read_file(folder / "secret.ply"); }), HasSubstr("no permission"));
 }
 
 TEST(ReadFile_Format, IsDecidedByContent_NotByExtension) {
@@ -76,7 +76,7 @@ TEST(ReadPoints_OfAMesh, GivesItsVertices_AndTellsTheFacesLeftOut) {
 TEST(ReadMesh_OfPoints, IsRefusedWithAWayOut) {
     const TemporaryFolder folder;
     write_file(folder / "a.ply", one_point());
-    EXPECT_THAT(error_of([&] { read_mesh(folder / "a.ply"); }),
+    EXPECT_THAT(report_of([&] { read_mesh(folder / "a.ply"); }),
                 testing::AllOf(HasSubstr("has 1 point and no faces"), HasSubstr("hint:")));
 }
 
@@ -97,16 +97,16 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
 TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {
     const TemporaryFolder folder;
     const Value nothing = std::make_shared<const PointCloud>();
-    EXPECT_THAT(error_of([&] { write_file(folder / "a.stl", one_point()); }),
+    EXPECT_THAT(report_of([&] { write_file(folder / "a.stl", one_point()); }),
                 testing::AllOf(HasSubstr("points cannot be written"), HasSubstr("ply, xyz")));
-    EXPECT_THAT(error_of([&] { write_file(folder / "a", one_point()); }), HasSubstr("extension ''"));
-    EXPECT_THAT(error_of([&] { write_file(folder / "a.ply", nothing); }), HasSubstr("has no points"));
-    EXPECT_THAT(error_of([&] { write_file(folder / "none/a.ply", one_point()); }), HasSubstr("there is no folder"));
+    EXPECT_THAT(report_of([&] { write_file(folder / "a", one_point()); }), HasSubstr("extension ''"));
+    EXPECT_THAT(report_of([&] { write_file(folder / "a.ply", nothing); }), HasSubstr("has no points"));
+    EXPECT_THAT(report_of([&] { write_file(folder / "none/a.ply", one_point()); }), HasSubstr("there is no folder"));
     EXPECT_EQ(folder.files(), 0u);
     fs::create_directory(folder / "b.ply");
-    EXPECT_THAT(error_of([&] { write_file(folder / "b.ply", one_point()); }), HasSubstr("a folder has this name"));
+    EXPECT_THAT(report_of([&] { write_file(folder / "b.ply", one_point()); }), HasSubstr("a folder has this name"));
     ASSERT_EQ(::mkfifo((folder / "c.ply").c_str(), 0600), 0);
-    EXPECT_THAT(error_of([&] { write_file(folder / "c.ply", one_point()); }),
+    EXPECT_THAT(report_of([&] { write_file(folder / "c.ply", one_point()); }),
                 HasSubstr("a pipe or device has this name"));
     EXPECT_EQ(folder.files(), 2u);
 }
@@ -117,8 +117,8 @@ TEST(WriteBytes_OfAValue, GivesWhatTheFileWouldHold_AndRefusesAlike) {
         write_file(folder / name, one_point());
         EXPECT_EQ(write_bytes(name, one_point()), content_of(folder / name));
     }
-    EXPECT_THAT(error_of([&] { write_bytes("a.stl", one_point()); }), HasSubstr("'a.stl': points cannot be written"));
-    EXPECT_THAT(error_of([&] { write_bytes("a.ply", std::make_shared<const PointCloud>()); }),
+    EXPECT_THAT(report_of([&] { write_bytes("a.stl", one_point()); }), HasSubstr("'a.stl': points cannot be written"));
+    EXPECT_THAT(report_of([&] { write_bytes("a.ply", std::make_shared<const PointCloud>()); }),
                 HasSubstr("has no points"));
 }
 
@@ -164,7 +164,7 @@ bool reports_a_full_disk() {
     ::setrlimit(RLIMIT_FSIZE, &tiny);
     const Value cloud =
         std::make_shared<const PointCloud>(PointCloud{{}, Buffer(Array<Vec3>(1000, Vec3(1, 2, 3))), {}});
-    const std::string warnings = error_of([&] { write_file(folder / "a.ply", cloud); });
+    const std::string warnings = report_of([&] { write_file(folder / "a.ply", cloud); });
     return warnings.find("writing failed") != std::string::npos && folder.files() == 0;
 }
 

@@ -30,8 +30,8 @@ private:
 
 /// A PLY of `count` vertices, x and y and z of type T between two other properties.
 template <class T>
-std::string ply(std::size_t count, std::string_view type, double middle = 0, bool big_endian = false,
-                std::string_view after = "") {
+std::string ply_of(std::size_t count, std::string_view type, double middle = 0, bool big_endian = false,
+                   std::string_view after = "") {
     std::string file = "ply\nformat binary_" + std::string(big_endian ? "big" : "little") +
                        "_endian 1.0\ncomment unit mm\ncomment frame part\nelement vertex " + std::to_string(count) +
                        "\nproperty uchar flag\nproperty " + std::string(type) + " x\nproperty " + std::string(type) +
@@ -162,29 +162,29 @@ void expect_not_read_so(std::string_view content, const char* name, bool begins_
 
 TEST(PointStream, OfFloats_IsTheFileReadWhole) {
     const TemporaryFolder folder;
-    expect_as_read_whole(folder.write("a.ply", ply<float>(200'000, "float")));
-    expect_as_read_whole(folder.write("one.ply", ply<float>(1, "float")));
-    expect_as_read_whole(folder.write("exact.ply", ply<float>(1 << 16, "float")));
+    expect_as_read_whole(folder.write("a.ply", ply_of<float>(200'000, "float")));
+    expect_as_read_whole(folder.write("one.ply", ply_of<float>(1, "float")));
+    expect_as_read_whole(folder.write("exact.ply", ply_of<float>(1 << 16, "float")));
 }
 
 TEST(PointStream, OfCoordinatesFarFromZero_ChoosesTheSameOrigin) {
     const TemporaryFolder folder;
-    expect_as_read_whole(folder.write("a.ply", ply<double>(70'000, "double", 5e6)));
+    expect_as_read_whole(folder.write("a.ply", ply_of<double>(70'000, "double", 5e6)));
     expect_as_read_whole(folder.write("a.xyz", text(70'000, 5e6)));
 }
 
 TEST(PointStream, OfBigEndianAndOfWholeNumbers_IsTheFileReadWhole) {
     const TemporaryFolder folder;
-    expect_as_read_whole(folder.write("a.ply", ply<double>(70'000, "double", -3, true)));
-    expect_as_read_whole(folder.write("b.ply", ply<std::int16_t>(70'000, "short", 100)));
+    expect_as_read_whole(folder.write("a.ply", ply_of<double>(70'000, "double", -3, true)));
+    expect_as_read_whole(folder.write("b.ply", ply_of<std::int16_t>(70'000, "short", 100)));
 }
 
 TEST(PointStream, OfAFileThatEndsWithALinesEnd_IsTheFileReadWhole) {
     const TemporaryFolder folder;
     for (const char* end :
          {"\n", "\r\n", "\n\n\r\n\r", "\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n"})
-        expect_as_read_whole(folder.write("a.ply", ply<float>(70'000, "float") + end));
-    expect_not_read_so(ply<float>(3, "float") + "\n.", "behind.ply");
+        expect_as_read_whole(folder.write("a.ply", ply_of<float>(70'000, "float") + end));
+    expect_not_read_so(ply_of<float>(3, "float") + "\n.", "behind.ply");
 }
 
 TEST(PointStream, OfText_IsTheFileReadWhole) {
@@ -214,7 +214,7 @@ TEST(PointStream, TellsWhatReadingTells) {
 
 TEST(PointStream, Renamed_GivesPointsInTheFrameOfThatName) {
     const TemporaryFolder folder;
-    const auto stream = open_point_stream(folder.write("a.ply", ply<float>(3, "float")), {}, 1);
+    const auto stream = open_point_stream(folder.write("a.ply", ply_of<float>(3, "float")), {}, 1);
     ASSERT_TRUE(stream);
     EXPECT_EQ(stream->frame().name, "part");
     stream->rename_frame("other");
@@ -228,12 +228,12 @@ TEST(PointStream, IsNotHadOfFilesThatHoldMore) {
         "end_header\n1 2 3\n",
         "ascii.ply");
     const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
-    expect_not_read_so(ply<float>(3, "float", 0, false, face) + std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13),
+    expect_not_read_so(ply_of<float>(3, "float", 0, false, face) + std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13),
                        "mesh.ply");
-    expect_not_read_so(ply<float>(3, "float", 0, false, "property list uchar int more\n"), "list.ply");
-    expect_not_read_so(ply<float>(3, "float", 0, false, "element thing 2\n"), "things_without_bytes.ply");
-    expect_not_read_so(ply<float>(3, "float") + "more", "trailing.ply");
-    const std::string whole = ply<float>(3, "float");
+    expect_not_read_so(ply_of<float>(3, "float", 0, false, "property list uchar int more\n"), "list.ply");
+    expect_not_read_so(ply_of<float>(3, "float", 0, false, "element thing 2\n"), "things_without_bytes.ply");
+    expect_not_read_so(ply_of<float>(3, "float") + "more", "trailing.ply");
+    const std::string whole = ply_of<float>(3, "float");
     expect_not_read_so(whole.substr(0, whole.size() - 1), "truncated.ply");
     expect_not_read_so("1 2 3 4\n5 6 7 8\n", "intensity.xyz");
     expect_not_read_so("2\n1 2 3\n4 5 6\n", "count.xyz");
@@ -248,7 +248,7 @@ TEST(PointStream, IsNotHadOfFilesThatAreWrong_SoThatReadingThemSaysWhy) {
     expect_not_read_so("1 2 3\n4,5 6\n", "mixed.xyz", true);
     expect_not_read_so(",1,2,3\n4,5,6\n", "empty_field.csv", true);
     expect_not_read_so("1 2 3\n4 5 nan\n", "nan.xyz", true);
-    std::string nan = ply<float>(3, "float");
+    std::string nan = ply_of<float>(3, "float");
     nan.replace(nan.size() - 24, 4, bytes_of(std::numeric_limits<float>::quiet_NaN()));
     expect_not_read_so(nan, "nan.ply", true);
     EXPECT_FALSE(open_point_stream("/nowhere/at/all.ply", {}, 1));

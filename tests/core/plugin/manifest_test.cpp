@@ -77,7 +77,7 @@ Manifest everything() {
 
 /// The sentence of parse_manifest() after `spoil` changed the JSON.
 template <class Spoil>
-std::string verdict(Spoil&& spoil) {
+std::string refusal_after(Spoil&& spoil) {
     Json json = Json::parse(to_json_text(everything()));
     spoil(json);
     return sentence_of([&] { parse_manifest(json.dump()); });
@@ -85,11 +85,12 @@ std::string verdict(Spoil&& spoil) {
 
 TEST(Manifest, NumbersThatAreNoWholeOnesOrDoNotFit_AreRefused) {
     for (const Json& number : {Json(1e300), Json(1.5), Json(std::int64_t(1) << 40), Json(~std::uint64_t(0))}) {
-        EXPECT_THAT(verdict([&](Json& json) { json["scanmill-manifest"] = number; }), HasSubstr("'scanmill-manifest'"));
-        EXPECT_THAT(verdict([&](Json& json) { json["version"] = number; }), HasSubstr("'version'"));
+        EXPECT_THAT(refusal_after([&](Json& json) { json["scanmill-manifest"] = number; }),
+                    HasSubstr("'scanmill-manifest'"));
+        EXPECT_THAT(refusal_after([&](Json& json) { json["version"] = number; }), HasSubstr("'version'"));
     }
     for (const Json& number : {Json(1e300), Json(-1)})
-        EXPECT_THAT(verdict([&](Json& json) { json["parameters"][9]["size"] = number; }), HasSubstr("'size'"));
+        EXPECT_THAT(refusal_after([&](Json& json) { json["parameters"][9]["size"] = number; }), HasSubstr("'size'"));
 }
 
 TEST(Manifest, SpecThatUsesEverything_ReadsBackEqual) {
@@ -161,35 +162,38 @@ TEST(Manifest, AnyTruncation_IsRefused) {
 }
 
 TEST(Manifest, AnotherVersion_IsRefusedWithBothNumbers) {
-    EXPECT_EQ(verdict([](Json& json) { json["scanmill-manifest"] = 2; }),
+    EXPECT_EQ(refusal_after([](Json& json) { json["scanmill-manifest"] = 2; }),
               "is a manifest of version 2; this program reads version 1");
 }
 
 TEST(Manifest, MissingField_IsNamed) {
     for (const char* field : {"scanmill-manifest", "abi", "name", "version", "summary", "source", "ties", "not-finite",
                               "inputs", "outputs", "parameters", "metrics"})
-        EXPECT_THAT(verdict([&](Json& json) { json.erase(field); }), HasSubstr(field));
-    EXPECT_THAT(verdict([](Json& json) { json["parameters"][0].erase("help"); }), HasSubstr("help"));
-    EXPECT_THAT(verdict([](Json& json) { json["parameters"][2]["low"].erase("inclusive"); }), HasSubstr("inclusive"));
+        EXPECT_THAT(refusal_after([&](Json& json) { json.erase(field); }), HasSubstr(field));
+    EXPECT_THAT(refusal_after([](Json& json) { json["parameters"][0].erase("help"); }), HasSubstr("help"));
+    EXPECT_THAT(refusal_after([](Json& json) { json["parameters"][2]["low"].erase("inclusive"); }),
+                HasSubstr("inclusive"));
 }
 
 TEST(Manifest, FieldOfAnotherType_IsRefused) {
-    EXPECT_THAT(verdict([](Json& json) { json["version"] = "twelve"; }), StartsWith("is not a manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["inputs"] = {1, 2}; }), StartsWith("is not a manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["inputs"][0]["list"] = "yes"; }), StartsWith("is not a manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["parameters"][0]["default"] = 3; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(refusal_after([](Json& json) { json["version"] = "twelve"; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(refusal_after([](Json& json) { json["inputs"] = {1, 2}; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(refusal_after([](Json& json) { json["inputs"][0]["list"] = "yes"; }),
+                StartsWith("is not a manifest: "));
+    EXPECT_THAT(refusal_after([](Json& json) { json["parameters"][0]["default"] = 3; }),
+                StartsWith("is not a manifest: "));
 }
 
 TEST(Manifest, UnknownNames_AreRefused) {
-    EXPECT_EQ(verdict([](Json& json) { json["inputs"][0]["kind"] = "voxels"; }), "kind: 'voxels' is unknown");
-    EXPECT_EQ(verdict([](Json& json) { json["parameters"][0]["type"] = "colour"; }), "type: 'colour' is unknown");
-    EXPECT_EQ(verdict([](Json& json) { json["metrics"][0]["unit"] = "mm"; }), "unit: 'mm' is unknown");
+    EXPECT_EQ(refusal_after([](Json& json) { json["inputs"][0]["kind"] = "voxels"; }), "kind: 'voxels' is unknown");
+    EXPECT_EQ(refusal_after([](Json& json) { json["parameters"][0]["type"] = "colour"; }), "type: 'colour' is unknown");
+    EXPECT_EQ(refusal_after([](Json& json) { json["metrics"][0]["unit"] = "mm"; }), "unit: 'mm' is unknown");
 }
 
 TEST(Manifest, DefaultOutsideItsRange_IsRefused) {
-    EXPECT_EQ(verdict([](Json& json) { json["parameters"][2]["default"] = "7"; }),
+    EXPECT_EQ(refusal_after([](Json& json) { json["parameters"][2]["default"] = "7"; }),
               "7 is out of range; expected a number of at least 1e-300 and at most 1");
-    EXPECT_EQ(verdict([](Json& json) { json["parameters"][0]["default"] = Json::array(); }),
+    EXPECT_EQ(refusal_after([](Json& json) { json["parameters"][0]["default"] = Json::array(); }),
               "is a list; expected true or false");
 }
 

@@ -21,13 +21,13 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-const std::filesystem::path plugin_folder = test::test_plugin_folder();
+const std::filesystem::path test_modules = test::test_plugin_folder();
 
-std::filesystem::path good_module() { return plugin_folder / "scanmill-test-step.so"; }
+std::filesystem::path good_module() { return test_modules / "scanmill-test-step.so"; }
 
 /// The sentence of the refusal to load unusable/scanmill-<name>.so as the filter <name>; it always names the file.
 std::string refusal(const std::string& name) {
-    const std::filesystem::path module = plugin_folder / "unusable" / ("scanmill-" + name + ".so");
+    const std::filesystem::path module = test_modules / "unusable" / ("scanmill-" + name + ".so");
     EXPECT_TRUE(std::filesystem::exists(module)) << "tests/modules makes it";
     const std::string sentence = sentence_of([&] { load_module(module, name); });
     EXPECT_THAT(sentence, HasSubstr("'" + module.string() + "'"));
@@ -36,7 +36,7 @@ std::string refusal(const std::string& name) {
 
 TEST(LoadModule, GoodModule_GivesWhatItsManifestSays) {
     const FilterDeclaration declaration = load_module(good_module(), "test-step");
-    const Manifest manifest = parse_manifest(content_of(plugin_folder / "scanmill-test-step.json"));
+    const Manifest manifest = parse_manifest(content_of(test_modules / "scanmill-test-step.json"));
     EXPECT_EQ(declaration.spec, manifest.spec);
     EXPECT_EQ(manifest.abi, abi_text());
     EXPECT_TRUE(declaration.run);
@@ -47,7 +47,7 @@ TEST(LoadModule, AnotherAbi_IsRefusedWithBothTextsAndWithoutACall) {
     EXPECT_THAT(refusal("foreign"),
                 AllOf(HasSubstr("was built for another program"), HasSubstr("'scanmill 0.0.1, another compiler'"),
                       HasSubstr("'" + abi_text() + "'")));
-    const Error error = error_of([] { load_module(plugin_folder / "unusable" / "scanmill-foreign.so", "foreign"); });
+    const Error error = error_of([] { load_module(test_modules / "unusable" / "scanmill-foreign.so", "foreign"); });
     EXPECT_THAT(error.hint(), HasSubstr("build the module again"));
 }
 
@@ -87,13 +87,13 @@ TEST(LoadModule, DeclarationThatThrowsANumber_IsRefused) {
 }
 
 TEST(LoadModuleDeathTest, StaticObjectThatThrows_EndsTheProcessWithTheModulesName) {
-    const auto module = plugin_folder / "unusable" / "scanmill-throwing-at-load.so";
+    const auto module = test_modules / "unusable" / "scanmill-throwing-at-load.so";
     EXPECT_DEATH(load_module(module, "throwing-at-load"),
                  "the licence has run out.*this process ended while it loaded the module '" + module.string() + "'");
 }
 
 TEST(LoadModuleDeathTest, StaticObjectThatExits_EndsTheProcessWithTheModulesName) {
-    const auto module = plugin_folder / "unusable" / "scanmill-exiting-at-load.so";
+    const auto module = test_modules / "unusable" / "scanmill-exiting-at-load.so";
     EXPECT_EXIT(load_module(module, "exiting-at-load"), testing::ExitedWithCode(3),
                 "this process ended while it loaded the module '" + module.string() + "'");
 }
@@ -112,7 +112,7 @@ TEST(LoadModule, FileOfAnotherName_IsRefused) {
 }
 
 TEST(LoadModule, MissingFile_CannotBeLoaded) {
-    const std::filesystem::path missing = plugin_folder / "scanmill-nowhere.so";
+    const std::filesystem::path missing = test_modules / "scanmill-nowhere.so";
     EXPECT_THAT(sentence_of([&] { load_module(missing, "nowhere"); }),
                 AllOf(HasSubstr("'" + missing.string() + "' cannot be loaded"), HasSubstr("No such file")));
 }
@@ -149,7 +149,7 @@ TEST(InstalledPluginFolder, LiesBesideTheCoreLibrary) {
     EXPECT_TRUE(std::filesystem::exists(core_library_file()));
     EXPECT_THAT(core_library_file().filename().string(), testing::StartsWith("libscanmill-core.so"));
     EXPECT_EQ(installed_plugin_folder(), std::filesystem::path(test::plugin_folder()));
-    EXPECT_NE(installed_plugin_folder(), plugin_folder) << "no product ever sees the tests' modules";
+    EXPECT_NE(installed_plugin_folder(), test_modules) << "no product ever sees the tests' modules";
 }
 
 }  // namespace

@@ -7,12 +7,10 @@
 #include <limits>
 
 #include "scanmill/cache/value_file.hpp"
+#include "support/numbers.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
-
-inline const double nan = std::numeric_limits<double>::quiet_NaN();
-inline const double infinity = std::numeric_limits<double>::infinity();
 
 template <class T>
 Value value(T object) {

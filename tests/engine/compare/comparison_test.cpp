@@ -12,6 +12,7 @@
 
 #include "engine/compare/made_runs.hpp"
 #include "scanmill/compare/reproduce.hpp"
+#include "support/numbers.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -24,7 +25,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-const double nan = std::numeric_limits<double>::quiet_NaN();
 const double infinite = std::numeric_limits<double>::infinity();
 
 /// The verdict when hausdorff goes from one value to another under one rule.

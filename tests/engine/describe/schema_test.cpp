@@ -69,14 +69,14 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
     }
 }
 
-struct Mistake {
+struct WorkflowMistake {
     std::string workflow;
     std::string schema;  ///< a part of the schema's errors: position and reason
     std::string check;  ///< a part of the only error of check
 };
 
 /// One mistake each, so that neither of the two can reject it for another reason.
-const std::vector<Mistake> mistakes{
+const std::vector<WorkflowMistake> workflow_mistakes{
     {"inputs: {scan: points}\nsteps: [{thin: }]\n", ": Missing required property 'scanmill'", "has no grammar version"},
     {"scanmill: 2\ninputs: {scan: points}\nsteps: [{thin: }]\n", "scanmill: Failed to match expected value",
      "the grammar is '2'"},
@@ -155,7 +155,7 @@ const std::vector<Mistake> mistakes{
 };
 
 TEST_F(WorkflowSchema, WhatIsWrongAtOnePlace_IsRejectedThere_AsByCheck) {
-    for (const Mistake& mistake : mistakes) {
+    for (const WorkflowMistake& mistake : workflow_mistakes) {
         EXPECT_THAT(errors_of_check(mistake.workflow), testing::ElementsAre(HasSubstr(mistake.check)))
             << mistake.workflow;
         EXPECT_THAT("\n" + schema_.complaints(mistake.workflow), HasSubstr("\n" + mistake.schema)) << mistake.workflow;

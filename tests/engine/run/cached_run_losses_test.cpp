@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr Origin ran = Origin::ran, cached = Origin::cached;
+using enum Origin;
 
 TEST_F(CachedRun, ValuesNotKept_AreMadeAgainWhereTheyAreNeeded) {
     keep_ = KeepRule::Policy::never;

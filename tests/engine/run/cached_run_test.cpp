@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Origin ran = Origin::ran, cached = Origin::cached, same_inputs = Origin::same_inputs;
+using enum Origin;
 
 TEST_F(CachedRun, TheSameAgain_ComputesNothingAndWritesTheSame) {
     EXPECT_THAT(origins(run_two("factor: 2", "factor: 3, mode: warn")), ElementsAre(ran, ran, ran));

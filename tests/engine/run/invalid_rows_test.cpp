@@ -6,14 +6,13 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/cache/prediction.hpp"
 #include "scanmill/formats/files.hpp"
+#include "support/numbers.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using testing::AllOf, testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 class InvalidRowsRun : public StreamedRun {
 protected:

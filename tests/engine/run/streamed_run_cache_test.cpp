@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr Origin ran = Origin::ran, cached = Origin::cached, same_inputs = Origin::same_inputs;
+using enum Origin;
 
 TEST_F(StreamedRun, TheSameAgain_ComputesNothing) {
     const std::string file = written(folder_ / "a.ply", helix(1000));

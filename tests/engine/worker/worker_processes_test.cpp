@@ -32,10 +32,10 @@ protected:
 };
 
 const std::string step = "  - test-step: {factor: 2, length: 5 %diag}\n    expect: {points: [3, 5], more: 0}\n";
-const std::string output = "outputs: {'{scan}.ply': test-step.points}\n";
+const std::string step_output = "outputs: {'{scan}.ply': test-step.points}\n";
 
 TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
-    const RunReport here = run(step, {scan("a.xyz")}, output);
+    const RunReport here = run(step, {scan("a.xyz")}, step_output);
     const std::string file = content_of(folder_ / "out/a.ply");
     ASSERT_TRUE(here.outcome() == Outcome::ok) << here.cells[0].failure.whole().what();
     std::filesystem::remove_all(folder_ / "out");
@@ -54,7 +54,7 @@ TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
 }
 
 TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {
-    prepare(step, {scan("a.xyz"), scan("b.xyz", "1 2 3\n4 5 6\n7 8 9\n")}, output);
+    prepare(step, {scan("a.xyz"), scan("b.xyz", "1 2 3\n4 5 6\n7 8 9\n")}, step_output);
     struct Stranger {
         std::vector<std::string> command;
         Cause cause;

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-SweepResult whole_sweep(const TetMesh& tets) {
+SweepResult sweep_of_all(const TetMesh& tets) {
     Context context;
     return sweep_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
 }
@@ -108,7 +108,7 @@ TEST(BoundaryDefects, VertexOfManyTriangles_IsTestedLikeAnyOther) {
 
 TEST(IncrementalSolid, CellByCell_HasTheVerdictOfTheWholeBoundary) {
     const TetMesh tets = tets_of(random_cube(120, 8));
-    const SweepResult sweep = whole_sweep(tets);
+    const SweepResult sweep = sweep_of_all(tets);
     Array<u8> labels(tets.cells.size());
     std::ranges::fill(labels, outside);
     IncrementalSolid incremental(tets, labels, {});

@@ -15,6 +15,7 @@
 #include "delaunay/delaunay.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/topology.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill::test {
@@ -99,6 +100,12 @@ inline PointCloud cubes_sharing_a_corner() { return joined(lattice_cube(8), move
 
 inline PointCloud two_spheres() {
     return joined(fibonacci_sphere(600, 1e-4), moved(fibonacci_sphere(300, 1e-4, 2), 0.5, Vec3(3, 0, 0)));
+}
+
+inline std::vector<std::string> warnings_of(const TetMesh& tets, const AlphaSolidParams& params) {
+    Context context;
+    alpha_solid(tets, params, context);
+    return sentences_of(context);
 }
 
 }  // namespace scanmill::test

@@ -6,7 +6,6 @@
 
 #include "filters/alpha_solid/cases.hpp"
 #include "scanmill/base/random.hpp"
-#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -19,12 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::vector<std::string> warnings_of(const TetMesh& tets, const AlphaSolidParams& params) {
-    Context context;
-    alpha_solid(tets, params, context);
-    return sentences_of(context);
-}
 
 AlphaSolidParams given(double alpha, double percent, AlphaComponents components = AlphaComponents::single) {
     AlphaSolidParams params = covering(percent, components);

@@ -9,7 +9,6 @@
 
 #include "alpha_solid/selection.hpp"
 #include "filters/alpha_solid/cases.hpp"
-#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -20,12 +19,6 @@ using namespace test;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::vector<std::string> warnings_of(const TetMesh& tets, const AlphaSolidParams& params) {
-    Context context;
-    alpha_solid(tets, params, context);
-    return sentences_of(context);
-}
 
 /// The number after "valid one is".
 double named_alpha(const std::string& warning) {

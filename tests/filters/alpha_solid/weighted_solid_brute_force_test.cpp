@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 
 /// The definition, in exact arithmetic: whether the facet is a wall at squared radius `value`.
-bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
+bool is_weighted_wall(const TetMesh& tets, u32 cell, int corner, double value) {
     const double largest = std::ranges::max(tets.weights);
     const auto at = [&](u32 vertex) { return WeightedPoint{&tets.positions[vertex], tets.weights[vertex]}; };
     const auto of_cell = [&](u32 c) {
@@ -47,11 +47,12 @@ Array<u8> brute_force_inside(const TetMesh& tets, double value) {
     };
     for (u32 c = 0; c < inside.size(); ++c)
         for (int i = 0; i < 4; ++i)
-            if (tets.neighbours[c][i] == TetMesh::outside_hull && inside[c] && !is_wall(tets, c, i, value)) enter(c);
+            if (tets.neighbours[c][i] == TetMesh::outside_hull && inside[c] && !is_weighted_wall(tets, c, i, value))
+                enter(c);
     for (; !open.empty(); open.pop_front())
         for (int i = 0; i < 4; ++i)
             if (const u32 across = tets.neighbours[open.front()][i];
-                across != TetMesh::outside_hull && inside[across] && !is_wall(tets, open.front(), i, value))
+                across != TetMesh::outside_hull && inside[across] && !is_weighted_wall(tets, open.front(), i, value))
                 enter(across);
     return inside;
 }

@@ -14,6 +14,7 @@
 #include "filters/features/cases.hpp"
 #include "scanmill/base/random.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 #include "support/mesh_operations.hpp"
@@ -232,6 +233,12 @@ inline double distance_to_edges(const Vec3& point, const TriangleMesh& mesh, std
     for (const auto& [a, b] : edges)
         least = std::min(least, (point - nearest_on_segment(point, mesh.positions[a], mesh.positions[b])).norm());
     return least;
+}
+
+inline std::size_t intersections_of(const TriangleMesh& mesh) {
+    Execution execution;
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
+    return self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, execution, 0).count;
 }
 
 }  // namespace scanmill::test

@@ -4,16 +4,9 @@
 
 #include "filters/decimate/cases.hpp"
 #include "scanmill/geometry/distance/certified_hausdorff.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
 
 namespace scanmill::test {
 namespace {
-
-std::size_t intersections_of(const TriangleMesh& mesh) {
-    Execution execution;
-    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
-    return self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, execution, 0).count;
-}
 
 TEST(DecimateLaws, RandomMeshes_KeepTopologyVerticesAndDistance) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {

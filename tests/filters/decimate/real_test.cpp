@@ -4,17 +4,10 @@
 
 #include "filters/decimate/cases.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {
 namespace {
-
-std::size_t intersections_of(const TriangleMesh& mesh) {
-    Execution execution;
-    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
-    return self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, execution, 0).count;
-}
 
 TEST(DecimateReal, Bunny_IsWithinTheDistanceWithATenthOfItsTriangles) {
     SCANMILL_REAL_SCAN(path, fetched_data, "meshes/bunny00.off");

@@ -33,13 +33,13 @@ TriangleMesh noisy_roof(double degrees, double noise) {
     return mesh_of(positions, triangles);
 }
 
-struct Length {
+struct CreaseLength {
     double near = 0, far = 0;  ///< of creases, within 1.5 of x = 30 and farther
     std::vector<bool> found = std::vector<bool>(60, false);  ///< by y
 };
 
-Length length_of(const FeatureGraph& graph) {
-    Length length;
+CreaseLength length_of(const FeatureGraph& graph) {
+    CreaseLength length;
     for (const FeaturePolyline& line : graph.polylines) {
         if (line.type != FeatureType::crease) continue;
         for (u32 i = line.begin; i + !line.closed < line.end; ++i) {
@@ -65,7 +65,7 @@ TEST(FeaturesOfANoisyPlane, AreItsBoundaryAlone) {
 
 TEST(FeaturesOfANoisyRoof, FollowItsRidge) {
     for (const double degrees : {60.0, 90.0}) {
-        const Length length = length_of(features_of(noisy_roof(degrees, 0.15)).graph);
+        const CreaseLength length = length_of(features_of(noisy_roof(degrees, 0.15)).graph);
         EXPECT_GE(std::ranges::count(length.found, true), 55) << degrees;
         EXPECT_LT(length.far, length.near / 10) << degrees;
         EXPECT_LT(length.near, 120) << degrees << ": one line, at most of twice the length";
@@ -124,7 +124,7 @@ TEST(FeaturesOfANoisyCube, AreItsTwelveEdges_AndACornerIsNearEachOfItsCorners) {
 }
 
 TEST(FeaturesOfANoisyRoof, OfLessThanTheSharpAngle_AreFew) {
-    const Length length = length_of(features_of(noisy_roof(20, 0.15)).graph);
+    const CreaseLength length = length_of(features_of(noisy_roof(20, 0.15)).graph);
     EXPECT_LT(length.near + length.far, 6);
 }
 

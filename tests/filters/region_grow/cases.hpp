@@ -16,6 +16,7 @@
 #include "scanmill/data/topology.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
+#include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::test {
 
@@ -146,6 +147,13 @@ inline RegionGrowParams with_max_normal_angle(double degrees) {
     RegionGrowParams params;
     params.max_normal_angle = Angle::degrees(degrees);
     return params;
+}
+
+inline PointCloud thinned(const PointCloud& cloud, double voxel) {
+    VoxelThinParams params;
+    params.bin_size = Length(voxel);
+    Context context;
+    return voxel_thin(cloud, params, context).points;
 }
 
 }  // namespace scanmill::test

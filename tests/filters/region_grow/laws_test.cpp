@@ -4,19 +4,11 @@
 
 #include "filters/region_grow/cases.hpp"
 #include "scanmill/base/random.hpp"
-#include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {
 namespace {
 
 using namespace test;
-
-PointCloud thinned(const PointCloud& cloud, double voxel) {
-    VoxelThinParams params;
-    params.bin_size = Length(voxel);
-    Context context;
-    return voxel_thin(cloud, params, context).points;
-}
 
 /// Points of the plane z = 0 in [0, width] × [0, height], `step` apart and jittered by up to half of that, where
 /// `solid`.

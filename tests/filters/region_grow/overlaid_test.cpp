@@ -4,7 +4,6 @@
 
 #include "filters/region_grow/cases.hpp"
 #include "merge/merge.hpp"
-#include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {
 namespace {
@@ -18,13 +17,6 @@ PointCloud merged(const PointCloud& one, const PointCloud& other) {
                                                                std::make_shared<const PointCloud>(other)};
     Context context;
     return merge(scans, {}, context).points;
-}
-
-PointCloud thinned(const PointCloud& cloud, double bin_size) {
-    VoxelThinParams params;
-    params.bin_size = Length(bin_size);
-    Context context;
-    return voxel_thin(cloud, params, context).points;
 }
 
 /// Two equal grids, one over the other.

@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr double voxel = 0.2;
 
-PointCloud thinned(std::vector<Vec3> points) {
+PointCloud thinned_cloud(std::vector<Vec3> points) {
     VoxelThinParams params;
     params.bin_size = Length(voxel);
     Context context;
@@ -30,7 +30,7 @@ std::vector<Vec3> sampled(std::size_t count, std::uint64_t seed, const std::func
     return points;
 }
 
-std::size_t self_intersections(const TriangleMesh& mesh) {
+std::size_t intersections_of(const TriangleMesh& mesh) {
     MeasureParams params;
     params.samples = 100;
     Context context;
@@ -43,14 +43,14 @@ void expect_disc(const RegionGrowResult& result) {
     EXPECT_EQ(result.components, 1u);
     EXPECT_EQ(result.loops, 1u);
     EXPECT_EQ(topology(result.mesh).euler, 1);
-    EXPECT_EQ(self_intersections(result.mesh), 0u);
+    EXPECT_EQ(intersections_of(result.mesh), 0u);
 }
 
 double degrees(double angle) { return angle / 180 * std::numbers::pi; }
 
 /// 10 high, its tip at the origin.
 PointCloud cone(double half_angle, std::uint64_t seed) {
-    return thinned(sampled(40000, seed, [&](Random& random) {
+    return thinned_cloud(sampled(40000, seed, [&](Random& random) {
         const double down = 10 * std::sqrt(random.uniform(0, 1)), turn = random.uniform(0, 2 * std::numbers::pi);
         const double radius = down * std::tan(degrees(half_angle));
         return Vec3(radius * std::cos(turn), radius * std::sin(turn), -down);
@@ -68,7 +68,7 @@ TEST(RegionGrowTips_Cones, AreClosedAtTheTipAndOpenAtTheBase) {
 /// Two planes at an angle of `opening`, 6 wide and 10 long, rounded where they meet.
 PointCloud edge(double opening, double radius, std::uint64_t seed) {
     const double half = degrees(opening / 2), arc = std::numbers::pi - 2 * half, side = 6;
-    return thinned(sampled(50000, seed, [&](Random& random) {
+    return thinned_cloud(sampled(50000, seed, [&](Random& random) {
         const double along = random.uniform(-side - radius * arc / 2, side + radius * arc / 2);
         const double beyond = std::max(0.0, std::abs(along) - radius * arc / 2);
         const double angle = radius > 0 ? std::clamp(along / radius, -arc / 2, arc / 2) : std::copysign(arc / 2, along);
@@ -94,7 +94,7 @@ TEST(RegionGrowTips_SpikesOnAPlate, AreClosed) {
         SCOPED_TRACE(seed);
         const double slope = std::tan(degrees(20)), height = 4, foot = height * slope;
         const double cone = std::numbers::pi * foot * std::hypot(foot, height), plate = 36;
-        expect_disc(grown(thinned(sampled(40000, seed, [&](Random& random) {
+        expect_disc(grown(thinned_cloud(sampled(40000, seed, [&](Random& random) {
             if (random.uniform(0, cone + plate) < cone) {
                 const double down = height * std::sqrt(random.uniform(0, 1));
                 const double turn = random.uniform(0, 2 * std::numbers::pi);
@@ -112,7 +112,7 @@ TEST(RegionGrowTips_RidgesThatSag, AreClosed) {
     // z = 2 cos y exp(-(x / 0.4)²): steep to both sides, and a saddle along its top.
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE(seed);
-        expect_disc(grown(thinned(sampled(50000, seed, [](Random& random) {
+        expect_disc(grown(thinned_cloud(sampled(50000, seed, [](Random& random) {
             for (;;) {
                 const double x = random.uniform(-2, 2), y = random.uniform(-3, 3), w = x / 0.4;
                 const double z = 2 * std::cos(y) * std::exp(-w * w);
@@ -130,7 +130,7 @@ TEST(RegionGrowTips_TooNarrowForTheVoxels, DoesNotIntersectItself) {
              {cone(8, seed), cone(10, seed), edge(50, 0, seed), edge(40, 0.05, seed), edge(20, 0, seed)}) {
             const RegionGrowResult result = grown(cloud);
             expect_consistent(result);
-            EXPECT_EQ(self_intersections(result.mesh), 0u);
+            EXPECT_EQ(intersections_of(result.mesh), 0u);
         }
     }
 }
@@ -143,13 +143,13 @@ TEST(RegionGrowTips_SheetsThatCross, DoNotIntersect) {
             return Vec3(x, y, random.uniform(-1, 1) < 0 ? 0.3 * x : -0.3 * x);
         })));
         expect_consistent(result);
-        EXPECT_EQ(self_intersections(result.mesh), 0u) << seed;
+        EXPECT_EQ(intersections_of(result.mesh), 0u) << seed;
     }
 }
 
 TEST(RegionGrowTips_PointsOfNoSurface, GiveNoSelfIntersection) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed)
-        EXPECT_EQ(self_intersections(grown(random_cube(2000, seed)).mesh), 0u) << seed;
+        EXPECT_EQ(intersections_of(grown(random_cube(2000, seed)).mesh), 0u) << seed;
 }
 
 /// An open box: grids of step 1 at y = 0 and y = width, joined by a floor and, if asked for, by ends.

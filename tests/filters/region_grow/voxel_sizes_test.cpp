@@ -20,13 +20,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-PointCloud thinned(const PointCloud& cloud, double size) {
-    VoxelThinParams params;
-    params.bin_size = Length(size);
-    Context context;
-    return voxel_thin(cloud, params, context).points;
-}
-
 PointCloud with_bin_sizes(PointCloud cloud, const std::function<double(std::size_t row)>& size) {
     Array<double> sizes(cloud.size());
     for (std::size_t row = 0; row < sizes.size(); ++row) sizes[row] = size(row);

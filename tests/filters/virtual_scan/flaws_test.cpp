@@ -7,30 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "filters/virtual_scan/cases.hpp"
 #include "support/shapes.hpp"
 #include "virtual_scan/seen_points.hpp"
 #include "virtual_scan/view.hpp"
-#include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 namespace {
-
-using Shape = VirtualScanParams::Shape;
-
-VirtualScanParams sphere(double resolution) {
-    VirtualScanParams params;
-    params.shape = Shape::sphere;
-    params.resolution = resolution;
-    return params;
-}
-
-VirtualScanResult scan(const VirtualScanParams& params, std::uint64_t seed = 0, unsigned threads = 1) {
-    ContextOptions options;
-    options.seed = seed;
-    options.threads = threads;
-    Context context(options);
-    return virtual_scan(nullptr, params, context);
-}
 
 bool same_bytes(const VirtualScanResult& a, const VirtualScanResult& b) {
     return std::ranges::equal(a.points.positions, b.points.positions) && a.points.columns == b.points.columns;

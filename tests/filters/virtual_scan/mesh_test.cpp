@@ -23,7 +23,7 @@ VirtualScanParams rays_every(double resolution, std::vector<double> views) {
     return params;
 }
 
-VirtualScanResult scan(const TriangleMesh& mesh, const VirtualScanParams& params, unsigned threads = 1) {
+VirtualScanResult scan_of(const TriangleMesh& mesh, const VirtualScanParams& params, unsigned threads = 1) {
     ContextOptions options;
     options.threads = threads;
     Context context(options);
@@ -60,7 +60,7 @@ std::optional<double> meets(const TriangleMesh& mesh, const Triangle& t, const V
 TEST(VirtualScanMesh, FlatTriangle_GivesItsPixelsByHand) {
     // Seen from above, rays at ±0.5, ±1.5 about the box's centre (2, 2): x, y ∈ {0.5, 1.5, 2.5, 3.5}, x + y ≤ 4.
     const TriangleMesh mesh = mesh_of({{0, 0, 3}, {4, 0, 3}, {0, 4, 3}}, {{0, 1, 2}});
-    const VirtualScanResult result = scan(mesh, rays_every(1, {0, 0, 1}));
+    const VirtualScanResult result = scan_of(mesh, rays_every(1, {0, 0, 1}));
     std::vector<std::pair<double, double>> seen;
     for (const Vec3& p : result.points.positions) {
         EXPECT_NEAR(p.z(), 3, 1e-15);
@@ -76,7 +76,7 @@ TEST(VirtualScanMesh, FlatTriangle_GivesItsPixelsByHand) {
 TEST(VirtualScanMesh, OpenMesh_IsSeenFromBothSidesWithItsNormalTurned) {
     const TriangleMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
     for (const double side : {1.0, -1.0}) {
-        const VirtualScanResult result = scan(mesh, rays_every(0.1, {0, 0, side}));
+        const VirtualScanResult result = scan_of(mesh, rays_every(0.1, {0, 0, side}));
         const auto normals = normals_of(result);
         ASSERT_GT(result.points.size(), 40u);
         for (std::size_t i = 0; i < result.points.size(); ++i) EXPECT_EQ(normals[3 * i + 2], side);
@@ -86,8 +86,8 @@ TEST(VirtualScanMesh, OpenMesh_IsSeenFromBothSidesWithItsNormalTurned) {
 TEST(VirtualScanMesh, TwoParallelPlates_OnlyTheNearerIsSeen) {
     const TriangleMesh mesh =
         mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}, {3, 5, 4}});
-    for (const Vec3& p : scan(mesh, rays_every(0.05, {0, 0, 1})).points.positions) ASSERT_EQ(p.z(), 1);
-    for (const Vec3& p : scan(mesh, rays_every(0.05, {0, 0, -1})).points.positions) ASSERT_EQ(p.z(), 0);
+    for (const Vec3& p : scan_of(mesh, rays_every(0.05, {0, 0, 1})).points.positions) ASSERT_EQ(p.z(), 1);
+    for (const Vec3& p : scan_of(mesh, rays_every(0.05, {0, 0, -1})).points.positions) ASSERT_EQ(p.z(), 0);
 }
 
 /// Square plates over [0, 2]² that cross at x = 1/2: z = x, and z = 1 − x.
@@ -102,7 +102,7 @@ TriangleMesh crossing_plates(bool rising_first) {
 }
 
 TEST(VirtualScanMesh, CrossingPlates_TheNearerIsSeenOnEitherSide) {
-    const VirtualScanResult result = scan(crossing_plates(true), rays_every(0.04, {0, 0, 1}));
+    const VirtualScanResult result = scan_of(crossing_plates(true), rays_every(0.04, {0, 0, 1}));
     ASSERT_EQ(result.points.size(), 2500u);
     for (const Vec3& p : result.points.positions) ASSERT_NEAR(p.z(), std::max(p.x(), 1 - p.x()), 1e-12);
 }
@@ -110,7 +110,7 @@ TEST(VirtualScanMesh, CrossingPlates_TheNearerIsSeenOnEitherSide) {
 TEST(VirtualScanMesh, RayThroughACrossing_MeetsTheLowerRow) {
     // Rays at x = 1/2, where both plates are equally near, and at 3/2.
     for (const bool rising_first : {true, false}) {
-        const VirtualScanResult result = scan(crossing_plates(rising_first), rays_every(1, {0, 0, 1}));
+        const VirtualScanResult result = scan_of(crossing_plates(rising_first), rays_every(1, {0, 0, 1}));
         const auto normals = normals_of(result);
         ASSERT_EQ(result.points.size(), 4u);
         for (std::size_t i = 0; i < 4; ++i) {
@@ -127,7 +127,7 @@ TEST(VirtualScanMesh, GeodesicSphere_PointsLieWithinTheSagitta) {
         longest = std::max(longest, (mesh.positions[a] - mesh.positions[b]).norm());
     const double circumradius = longest / std::numbers::sqrt3 * 1.1;
     const double inner = std::sqrt(4 - circumradius * circumradius);
-    const VirtualScanResult result = scan(mesh, rays_every(0.05, {20}));
+    const VirtualScanResult result = scan_of(mesh, rays_every(0.05, {20}));
     ASSERT_GT(result.points.size(), 50000u);
     for (const Vec3& p : result.points.positions) {
         ASSERT_LE(p.norm(), 2 + 1e-12);
@@ -138,10 +138,10 @@ TEST(VirtualScanMesh, GeodesicSphere_PointsLieWithinTheSagitta) {
 TEST(VirtualScanMesh, ClosedConvexMesh_NoRayPassesBetweenTriangles) {
     // Rays through vertices and along edges: a cube cut into many triangles, seen straight on, pixels on its lattice.
     const TriangleMesh mesh = cube(4);
-    const VirtualScanResult result = scan(mesh, rays_every(0.25, {0, 0, 1, 1, 0, 0, 0, -1, 0}));
+    const VirtualScanResult result = scan_of(mesh, rays_every(0.25, {0, 0, 1, 1, 0, 0, 0, -1, 0}));
     EXPECT_EQ(result.points.size(), 3u * 16 * 16);
     // The geodesic sphere's silhouette has no holes: every row of pixels is one run.
-    const VirtualScanResult sphere = scan(geodesic_sphere(1, 8), rays_every(0.01, {3, 1, 2}));
+    const VirtualScanResult sphere = scan_of(geodesic_sphere(1, 8), rays_every(0.01, {3, 1, 2}));
     const Vec3 d = sphere.directions[0];
     const Vec3 right = Vec3::UnitZ().cross(d).normalized(), up = d.cross(right);
     double row = -2, last = 0;
@@ -157,7 +157,7 @@ TEST(VirtualScanMesh, ClosedConvexMesh_NoRayPassesBetweenTriangles) {
 /// Every point is where its own ray first meets some triangle, by an independent test.
 TEST(VirtualScanMesh, LBlockObliquely_EveryPointIsTheFirstOnItsRay) {
     const TriangleMesh mesh = l_block();
-    const VirtualScanResult result = scan(mesh, rays_every(0.03, {3, 2, 1, -1, 4, 2, 2, -3, -1}));
+    const VirtualScanResult result = scan_of(mesh, rays_every(0.03, {3, 2, 1, -1, 4, 2, 2, -3, -1}));
     const auto views = result.points.columns.find("view")->values<std::int32_t>();
     std::size_t confirmed = 0;
     for (std::size_t i = 0; i < result.points.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(VirtualScanMesh, LBlockObliquely_EveryPointIsTheFirstOnItsRay) {
 
 TEST(VirtualScanMesh, LBlock_AgreesWithTheSameShapeByFormula) {
     VirtualScanParams params = rays_every(0.0237, {3, 2, 1, -1, 4, 2, 0, 0, -1});
-    const VirtualScanResult by_mesh = scan(l_block(), params);
+    const VirtualScanResult by_mesh = scan_of(l_block(), params);
     params.shape = VirtualScanParams::Shape::l_block;
     Context context;
     const VirtualScanResult by_formula = virtual_scan(nullptr, params, context);
@@ -189,13 +189,13 @@ TEST(VirtualScanMesh, FrameAndUnit_AreThoseOfTheMesh) {
     mesh.frame = {LengthUnit::millimetre, Vec3(1000, 0, 0), "part"};
     VirtualScanParams params = rays_every(0.1, {6});
     params.resolution = Length(0.1, Length::In::millimetre);
-    EXPECT_EQ(scan(mesh, params).points.frame, mesh.frame);
+    EXPECT_EQ(scan_of(mesh, params).points.frame, mesh.frame);
     params.resolution = Length(0.01, Length::In::centimetre);
-    EXPECT_DOUBLE_EQ(scan(mesh, params).resolution, 0.1);
+    EXPECT_DOUBLE_EQ(scan_of(mesh, params).resolution, 0.1);
     params.resolution = Length::percent_of_diagonal(10);
-    EXPECT_NEAR(scan(mesh, params).resolution, std::sqrt(3) / 10, 1e-15);
+    EXPECT_NEAR(scan_of(mesh, params).resolution, std::sqrt(3) / 10, 1e-15);
     params.resolution = Length::spacings(0.5);
-    EXPECT_NEAR(scan(mesh, params).resolution, 0.5, 1e-15) << "the cube's median edge is 1";
+    EXPECT_NEAR(scan_of(mesh, params).resolution, 0.5, 1e-15) << "the cube's median edge is 1";
 }
 
 TEST(VirtualScanMesh, UnusedDistantVertex_DoesNotWidenTheScan) {
@@ -203,7 +203,7 @@ TEST(VirtualScanMesh, UnusedDistantVertex_DoesNotWidenTheScan) {
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     positions.push_back({1e6, 0, 0});
     mesh.positions = std::move(positions);
-    EXPECT_EQ(scan(mesh, rays_every(0.1, {0, 0, 1})).rays, scan(cube(), rays_every(0.1, {0, 0, 1})).rays);
+    EXPECT_EQ(scan_of(mesh, rays_every(0.1, {0, 0, 1})).rays, scan_of(cube(), rays_every(0.1, {0, 0, 1})).rays);
 }
 
 TEST(VirtualScanMesh, RealMesh_FromTwelveViewsShowsThatMuchOfIt) {
@@ -211,7 +211,7 @@ TEST(VirtualScanMesh, RealMesh_FromTwelveViewsShowsThatMuchOfIt) {
     const auto mesh = read_mesh(path);
     VirtualScanParams params;
     params.noise = Length::percent_of_diagonal(0);
-    const VirtualScanResult one = scan(*mesh, params, 1), two = scan(*mesh, params, 2);
+    const VirtualScanResult one = scan_of(*mesh, params, 1), two = scan_of(*mesh, params, 2);
     ASSERT_GT(one.points.size(), 20000u);
     EXPECT_TRUE(std::ranges::equal(one.points.positions, two.points.positions));
     EXPECT_TRUE(one.points.columns == two.points.columns);

@@ -5,17 +5,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
+#include "filters/virtual_scan/cases.hpp"
 #include "scanmill/base/error.hpp"
-#include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 namespace {
 
-using Shape = VirtualScanParams::Shape;
 using testing::HasSubstr;
-constexpr double pi = std::numbers::pi;
 
 VirtualScanParams block_of(std::vector<Length> size, double resolution) {
     VirtualScanParams params;
@@ -33,11 +30,6 @@ VirtualScanParams saddle_of(double radius, double height, double resolution) {
     return params;
 }
 
-VirtualScanResult scan(const VirtualScanParams& params) {
-    Context context;
-    return virtual_scan(nullptr, params, context);
-}
-
 std::string refusal(const VirtualScanParams& params) {
     try {
         scan(params);
@@ -45,11 +37,6 @@ std::string refusal(const VirtualScanParams& params) {
         return error.sentence();
     }
     return "not refused";
-}
-
-Vec3 normal_of(const PointCloud& cloud, std::size_t i) {
-    const auto values = cloud.columns.find("normal")->values<double>();
-    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
 struct Hole {

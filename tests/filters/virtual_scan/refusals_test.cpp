@@ -4,24 +4,16 @@
 
 #include <limits>
 
+#include "filters/virtual_scan/cases.hpp"
 #include "scanmill/base/error.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
-#include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 namespace {
 
-using Shape = VirtualScanParams::Shape;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-VirtualScanParams sphere(double resolution) {
-    VirtualScanParams params;
-    params.shape = Shape::sphere;
-    params.resolution = resolution;
-    return params;
-}
 
 std::string refusal(const VirtualScanParams& params, const TriangleMesh* mesh = nullptr) {
     try {

@@ -4,16 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
+#include "filters/virtual_scan/cases.hpp"
 #include "virtual_scan/sign_changes.hpp"
-#include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 namespace {
-
-using Shape = VirtualScanParams::Shape;
-constexpr double pi = std::numbers::pi;
 
 VirtualScanParams shape_of(Shape shape, std::vector<Length> size, double resolution) {
     VirtualScanParams params;
@@ -22,16 +18,6 @@ VirtualScanParams shape_of(Shape shape, std::vector<Length> size, double resolut
     params.resolution = resolution;
     params.max_angle = Angle::degrees(90);
     return params;
-}
-
-VirtualScanResult scan(const VirtualScanParams& params) {
-    Context context;
-    return virtual_scan(nullptr, params, context);
-}
-
-Vec3 normal_of(const PointCloud& cloud, std::size_t i) {
-    const auto values = cloud.columns.find("normal")->values<double>();
-    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
 std::size_t points_of_view(const PointCloud& cloud, std::int32_t view) {

@@ -7,6 +7,7 @@
 
 #include "geometry/growing/patch.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
+#include "support/numbers.hpp"
 
 namespace scanmill {
 namespace {
@@ -122,8 +123,6 @@ TEST(HoleTriangulation_DihedralDeviation, IsLimited) {
     EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
     EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 164), IsEmpty());
 }
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// A loop with a strip around it that slopes down outwards by `fall` degrees: 0 is the loop's plane, 90 a wall below
 /// it, and more a fold back under it. At `flaps` edges the strip's triangle is replaced by three around a point inside

@@ -12,14 +12,13 @@
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "support/mesh_operations.hpp"
+#include "support/numbers.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill {
 namespace {
 
 using namespace test;
-
-constexpr double degree = std::numbers::pi / 180;
 
 Execution with_threads(unsigned threads) {
     ExecutionOptions options;

@@ -9,7 +9,7 @@ namespace {
 const std::string basics =
     "intensity return_number number_of_returns classification scan_angle user_data point_source_id";
 
-const std::vector<Sample> samples{
+const std::vector<Sample> las_samples{
     {"e57/ok/libe57_ColouredCubeDouble.e57", 0, "E57 is not read"},
     {"e57/ok/libe57_ColouredCubeFloat.e57", 0, "E57 is not read"},
     {"e57/ok/libe57_bunnyDouble.e57", 0, "E57 is not read"},
@@ -95,7 +95,7 @@ const std::vector<Sample> samples{
      {1694291.6363326558, 1816493.0662305846, 5597.089652537912}},
 };
 
-TEST(Samples_Las, HaveTheirPointsAndColumns) { check_samples(samples, {"las", "e57"}); }
+TEST(Samples_Las, HaveTheirPointsAndColumns) { check_samples(las_samples, {"las", "e57"}); }
 
 struct Sums {
     const char* file;

@@ -9,11 +9,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string right_triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-const std::string square = right_triangle + "v 1 1 0\n";
+const std::string three_corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string four_corners = three_corners + "v 1 1 0\n";
 
 TEST(ObjReader_Face, OfEachForm_NamesTheSameVertices) {
-    const std::string lists = right_triangle + "vt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n";
+    const std::string lists = three_corners + "vt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n";
     for (const char* face : {"f 3 1 2", "f 3/1 1/2 2/3", "f 3//1 1//2 2//3", "f 3/1/1 1/2/2 2/3/3", "f 3/ 1/ 2/",
                              "f 3// 1// 2//", "f 3/1/ 1/2/ 2/3/", "fo 3 1 2", "\tf  3\t1 2  # the only one"}) {
         const auto mesh = mesh_in(lists + face + "\n", "a.obj");
@@ -23,18 +23,18 @@ TEST(ObjReader_Face, OfEachForm_NamesTheSameVertices) {
 }
 
 TEST(ObjReader_Face, NumberedBackwards_CountsFromTheVerticesBeforeIt) {
-    const auto mesh = mesh_in(right_triangle + "f -3 -2 -1\nv 5 5 5\nf -4 -1 2\n", "a.obj");
+    const auto mesh = mesh_in(three_corners + "f -3 -2 -1\nv 5 5 5\nf -4 -1 2\n", "a.obj");
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 3, 1}));
 }
 
 TEST(ObjReader_Face, MayStandBeforeItsVertices) {
-    const auto mesh = mesh_in("f 1 2 3\n" + right_triangle, "a.obj");
+    const auto mesh = mesh_in("f 1 2 3\n" + three_corners, "a.obj");
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
 }
 
 TEST(ObjReader_Face, OfFourCorners_BecomesAFan_OfTwo_IsLeftOut) {
     Warnings warnings;
-    const auto mesh = mesh_in(square + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &warnings);
+    const auto mesh = mesh_in(four_corners + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut"),
                                                 HasSubstr("3 faces of fewer than three corners were left out")));
@@ -56,9 +56,9 @@ TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
              {"f 1 2 3/x/1\n", "line 4: '3/x/1' is not a corner"},
              {"f 1 2 3///1\n", "line 4: '3///1' is not a corner"},
              {"f 1 2 /3\n", "line 4: '/3' is not a corner"}})
-        EXPECT_THAT(refusal_of(right_triangle + face, "a.obj"), HasSubstr(warnings)) << face;
+        EXPECT_THAT(refusal_of(three_corners + face, "a.obj"), HasSubstr(warnings)) << face;
     // A vertex may follow the face that names it.
-    EXPECT_THAT(refusal_of("f 1 2 3\nf 1 2 4\n" + right_triangle, "a.obj"), HasSubstr("line 2: a face names vertex 4"));
+    EXPECT_THAT(refusal_of("f 1 2 3\nf 1 2 4\n" + three_corners, "a.obj"), HasSubstr("line 2: a face names vertex 4"));
 }
 
 TEST(ObjReader_Vertex, WithoutThreeNumbers_IsRefusedWithItsLine) {
@@ -107,7 +107,7 @@ TEST(ObjReader_Colours, ThatNotEveryVertexHas_AreLeftOutAndReported) {
 }
 
 TEST(ObjReader_Text, EveryLineEndAndByteOrderMark_ReadAlike) {
-    const std::string text = "# unit mm\n# frame part 7\n" + right_triangle + "\n\nf 1 2 3\n";
+    const std::string text = "# unit mm\n# frame part 7\n" + three_corners + "\n\nf 1 2 3\n";
     for (const char* end : {"\n", "\r\n", "\r"})
         for (const char* begin : {"", "\xef\xbb\xbf"}) {
             std::string other = begin;
@@ -132,20 +132,20 @@ TEST(ObjReader_Text, BackslashAtALinesEnd_ContinuesIt) {
         EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
     }
     // In a comment it is text, inside a line an ordinary character, and at the text's end no line follows.
-    EXPECT_EQ(
-        mesh_in("# C:\\scans\\\n" + right_triangle + "mtllib C:\\a\\b.mtl\nf 1 2 3 \\", "a.obj")->triangles.size(), 1u);
-    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\\n 4\n", "a.obj"), HasSubstr("line 5: a face names vertex 4"));
-    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\3\n", "a.obj"), HasSubstr("is not a corner of a face"));
+    EXPECT_EQ(mesh_in("# C:\\scans\\\n" + three_corners + "mtllib C:\\a\\b.mtl\nf 1 2 3 \\", "a.obj")->triangles.size(),
+              1u);
+    EXPECT_THAT(refusal_of(three_corners + "f 1 2\\\n 4\n", "a.obj"), HasSubstr("line 5: a face names vertex 4"));
+    EXPECT_THAT(refusal_of(three_corners + "f 1 2\\3\n", "a.obj"), HasSubstr("is not a corner of a face"));
 }
 
 TEST(ObjReader_Text, Cut_IsReadOrRefused_ByWhatIsLeft) {
-    const std::string whole = square + "f 1 2 4\nf 1 4 3";
+    const std::string whole = four_corners + "f 1 2 4\nf 1 4 3";
     EXPECT_EQ(mesh_in(whole, "a.obj")->triangles.size(), 2u);
     Warnings warnings;
     EXPECT_EQ(mesh_in(whole.substr(0, whole.size() - 2), "a.obj", &warnings)->triangles.size(), 1u);
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of fewer than three corners was left out")));
-    EXPECT_EQ(points_in(whole.substr(0, square.size()), "a.obj")->size(), 4u);
-    EXPECT_THAT(refusal_of(whole.substr(0, square.size() - 3), "a.obj"),
+    EXPECT_EQ(points_in(whole.substr(0, four_corners.size()), "a.obj")->size(), 4u);
+    EXPECT_THAT(refusal_of(whole.substr(0, four_corners.size() - 3), "a.obj"),
                 HasSubstr("line 4: the row ends before a coordinate of a vertex (v)"));
 }
 
@@ -158,16 +158,16 @@ TEST(ObjReader_WithoutVertices, IsRefused) {
 
 TEST(ObjReader_WithoutFaces, IsACloudOfAllVertices) {
     Warnings warnings;
-    EXPECT_EQ(points_in(square + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &warnings)->size(), 4u);
+    EXPECT_EQ(points_in(four_corners + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &warnings)->size(), 4u);
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 lines (l) were left out, first in line 5"),
                                                 HasSubstr("1 row of points (p) was left out, first in line 7")));
 }
 
 TEST(ObjReader_Divisions, AreReportedWhenThereIsMoreThanOne) {
     Warnings warnings;
-    mesh_in("o a\ng b c\nusemtl d\ns off\n" + right_triangle + "f 1 2 3\ng b c\nusemtl d\n", "a.obj", &warnings);
+    mesh_in("o a\ng b c\nusemtl d\ns off\n" + three_corners + "f 1 2 3\ng b c\nusemtl d\n", "a.obj", &warnings);
     EXPECT_THAT(warnings.sentences, IsEmpty());
-    mesh_in("mtllib a.mtl\no a\ng\ng b c\ng b\nusemtl d\nusemtl e\nusemtl d\ns 1\ns 2\n" + right_triangle + "f 1 2 3\n",
+    mesh_in("mtllib a.mtl\no a\ng\ng b c\ng b\nusemtl d\nusemtl e\nusemtl d\ns 1\ns 2\n" + three_corners + "f 1 2 3\n",
             "a.obj", &warnings);
     EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("3 groups (g), 2 materials (usemtl), 2 smoothing groups (s) were merged"),
@@ -177,7 +177,7 @@ TEST(ObjReader_Divisions, AreReportedWhenThereIsMoreThanOne) {
 
 TEST(ObjReader_OtherRows, AreCountedAndReported) {
     Warnings warnings;
-    mesh_in(right_triangle + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj",
+    mesh_in(three_corners + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj",
             &warnings);
     EXPECT_THAT(
         warnings.sentences,
@@ -189,8 +189,8 @@ TEST(ObjReader_OtherRows, AreCountedAndReported) {
 }
 
 TEST(ObjReader_Content, IsRecognisedWithoutItsExtension) {
-    EXPECT_EQ(read_bytes(right_triangle, "a.xyz").format, "OBJ");
-    EXPECT_EQ(read_bytes("# remark\nmtllib a.mtl\ng a\n" + right_triangle, "a").format, "OBJ");
+    EXPECT_EQ(read_bytes(three_corners, "a.xyz").format, "OBJ");
+    EXPECT_EQ(read_bytes("# remark\nmtllib a.mtl\ng a\n" + three_corners, "a").format, "OBJ");
     // More than recognition looks at, cut inside a row.
     std::string large;
     while (large.size() < 10000) large += "v 1.25 -3.5 0.0625\n";

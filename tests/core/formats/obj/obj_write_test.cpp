@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TriangleMesh one_triangle() {
+TriangleMesh far_triangle() {
     TriangleMesh mesh;
     mesh.positions = {Vec3(0.1, 0, -2), Vec3(1e21, 0, 0), Vec3(0, 1, 0)};
     mesh.triangles = {Triangle{0, 2, 1}};
@@ -25,7 +25,7 @@ std::string written(const TriangleMesh& mesh, const char* name, Warnings* warnin
 }
 
 TEST(ObjWriter_File, IsThisForOneTriangle) {
-    TriangleMesh mesh = one_triangle();
+    TriangleMesh mesh = far_triangle();
     EXPECT_EQ(written(mesh, "a.obj"), "v 0.1 0 -2\nv 1e+21 0 0\nv 0 1 0\nf 1 3 2\n");
     mesh.frame.unit = LengthUnit::millimetre;
     mesh.frame.name = "part 7";
@@ -97,13 +97,13 @@ TEST(ObjWriter_ColourOfEveryByte, ComesBack) {
     mesh.vertex_columns.add(Column("colour", 3, Buffer(std::move(colours))));
     EXPECT_EQ(mesh_in(written(mesh, "a.obj"), "a.obj")->vertex_columns, mesh.vertex_columns);
     // The darkest of all could be taken for whole numbers.
-    mesh = one_triangle();
+    mesh = far_triangle();
     mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>{0, 0, 0, 1, 0, 0, 1, 1, 1}));
     EXPECT_EQ(mesh_in(written(mesh, "a.obj"), "a.obj")->vertex_columns, mesh.vertex_columns);
 }
 
 TEST(ObjWriter_MeshWithoutTriangles, ComesBackAsItsVertices) {
-    TriangleMesh mesh = one_triangle();
+    TriangleMesh mesh = far_triangle();
     mesh.triangles = {};
     mesh.vertex_columns.add(Column("normal", 3, Buffer<double>{0, 0, 1, 0, 1, 0, 1, 0, 0}));
     const auto back = points_in(written(mesh, "a.obj"), "a.obj");
@@ -113,7 +113,7 @@ TEST(ObjWriter_MeshWithoutTriangles, ComesBackAsItsVertices) {
 
 TEST(ObjWriter_Losses, AreReported) {
     Warnings warnings;
-    TriangleMesh mesh = one_triangle();
+    TriangleMesh mesh = far_triangle();
     mesh.vertex_columns.add(Column("normal", 3, Buffer<u8>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
     mesh.vertex_columns.add(Column("weight", 1, Buffer<float>{0, 0, 1}));
     mesh.vertex_columns.add(Column("colour", 4, Buffer<u8>{1, 2, 3, 255, 1, 2, 3, 254, 1, 2, 3, 0}));

@@ -2,11 +2,11 @@
 // OBJ and OFF files from other programs' collections, ordinary and odd. Their counts and areas were found with another
 // program: polygons cut into fans, the triangles' areas summed.
 #include "core/formats/mesh_samples_support.hpp"
+#include "support/numbers.hpp"
 
 namespace scanmill::test {
 namespace {
 
-const double nan = std::numeric_limits<double>::quiet_NaN();
 const char* const no_points = "holds no points: no row is a vertex (v)";
 const char* const normals_differ = "the normals (vn) were left out: at 8 of 8 vertices they differ";
 

@@ -8,8 +8,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string right_triangle = "0 0 0\n1 0 0\n0 1 0\n";
-
 TEST(OffReader_Plain, CountsOnTheirLineOrOnTheKeywords_ReadAlike) {
     for (const char* begin :
          {"OFF\n3 1 0\n", "OFF 3 1 0\n", "# remark\n\n OFF # here\n\n3 1\n", "OFF3 1 0\r\n", "3 1 0\n"}) {

@@ -15,7 +15,6 @@ using testing::HasSubstr;
 const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
 const std::string three_vertices = "element vertex 3\n" + xyz;
 const std::string corners = "property list uchar int vertex_indices\n";
-const std::string right_triangle = "0 0 0\n1 0 0\n0 1 0\n";
 
 std::string ascii(const std::string& elements, const std::string& body) {
     return "ply\nformat ascii 1.0\n" + elements + "end_header\n" + body;

@@ -6,7 +6,7 @@
 namespace scanmill::test {
 namespace {
 
-const std::vector<Sample> samples{
+const std::vector<Sample> text_samples{
     {"xyz/odd/pdal_crlf_test.txt", 10, "Intensity", {289818.50, 4320980.59, 170.58}},
     {"xyz/odd/pdal_crlf_test2.txt", 10, "Intensity", {289818.50, 4320980.59, 170.58}},
     {"xyz/odd/pdal_duplicates-unsorted.txt", 7, "GpsTime PointSourceId UserData", {0, 1, 1}},
@@ -34,7 +34,7 @@ const std::vector<Sample> samples{
     {"ptx/ok/pdal_no-color.ptx", 15, "intensity approach", {635795.24, 849310.43, 426.61}},
 };
 
-TEST(Samples_Text, HaveTheirPointsAndColumns) { check_samples(samples, {"xyz", "pts", "ptx"}); }
+TEST(Samples_Text, HaveTheirPointsAndColumns) { check_samples(text_samples, {"xyz", "pts", "ptx"}); }
 
 TEST(Samples_Ptx, TheScaledScan_LiesOnTheSameScanAsStored) {
     // Scan 0 has its first points less 6e5, 8e5, 400 and half as high, and the matrix that undoes that.
