@@ -101,6 +101,7 @@ format: ## format the C++ code
 	tools/deps.sh
 	tools/format.sh
 
-lint: dev ## run clang-tidy over the C++ code
+lint: ## run clang-tidy and clang's warnings over the C++ code
+	tools/deps.sh
 	tools/deps.sh lint
-	tools/lint.sh build/dev
+	tools/lint.sh
