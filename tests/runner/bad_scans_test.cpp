@@ -16,6 +16,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 struct BadScan {
@@ -177,8 +178,7 @@ TEST(BadScan, RawScans_OfTwoScales_KeepTheLargerObject) {
     const TemporaryFolder folder;
     const ProgramResult ran = raw_scans_of(sphere(3000, 1, 0) + sphere(3000, 0.02, 1.3), folder);
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
-    EXPECT_THAT(ran.err,
-                HasSubstr("1 of 2 components are removed, with 160 triangles: each has less than 1 % of the area"));
+    EXPECT_THAT(ran.err, ContainsRegex("1 of 2 components .*160 triangles.* 1 % of the area"));
     EXPECT_TRUE(std::filesystem::exists(folder / "out/raw-scans.ply"));
 }
 

@@ -11,6 +11,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -66,7 +67,7 @@ TEST_F(MeasuredBatch, TruthInAnUnknownUnit_FailsItsCellsAndIsNeverScored) {
     write_measured("truth.stl");
     const ProgramResult ran = run_batch(once_);
     EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_THAT(ran.err, AllOf(HasSubstr("the mesh is in mm, the truth has no unit; they cannot be compared"),
+    EXPECT_THAT(ran.err, AllOf(ContainsRegex("mesh is in mm, .*truth has no unit"),
                                HasSubstr("in step 'measure-surface' (b.yaml:5:1)"),
                                HasSubstr("declare the truth's unit: `truth: {path: FILE, unit: mm}`")));
     for (const Json& step : of_step(recorded(1), "measure-surface")) EXPECT_EQ(step["outcome"], "failed");
@@ -79,7 +80,7 @@ TEST_F(MeasuredBatch, TruthInAnotherFrame_FailsItsCells) {
                   "unit: mm, frame: machine}}]\nworkflows: w.yaml\nmeasure:\n");
     const ProgramResult ran = run_batch(once_);
     EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_THAT(ran.err, HasSubstr("the mesh is in the frame 'part', the truth in the frame 'machine'"));
+    EXPECT_THAT(ran.err, ContainsRegex("mesh .*frame 'part', .*truth .*frame 'machine'"));
 }
 
 TEST_F(MeasuredBatch, TruthOfPoints_IsReadAsPoints) {
@@ -136,7 +137,7 @@ TEST_F(MeasuredBatch, TruthThatTheBatchWouldWrite_IsRefusedBeforeAnythingRuns) {
     write_measured("{path: 'out/{stem}.ply', unit: mm}");
     const ProgramResult ran = run_batch(once_);
     EXPECT_EQ(ran.exit_code, 2);
-    EXPECT_THAT(ran.err, AllOf(HasSubstr("out/a.ply' is an input; an output must not replace it")));
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("out/a.ply' is an input")));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 

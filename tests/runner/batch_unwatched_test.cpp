@@ -12,6 +12,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -50,8 +51,8 @@ TEST_F(Unwatched, KilledStep_IsReportedAsKilled_WithMemoryAndHint) {
     EXPECT_EQ(step["number"], SIGKILL);
     EXPECT_GT(step["peak-memory"], 96 << 20);
     EXPECT_THAT(step["error"].get<std::string>(),
-                AllOf(HasSubstr("ended by the signal SIGKILL (Killed); its largest memory was "),
-                      HasSubstr("may have run out of memory"), HasSubstr("limits: {memory: ")));
+                AllOf(ContainsRegex("SIGKILL .*largest memory was "), HasSubstr("may have run out of memory"),
+                      HasSubstr("limits: {memory: ")));
 }
 
 TEST_F(Unwatched, StepThatClosesTheChannelAndGoesOn_IsEnded) {
@@ -101,7 +102,7 @@ TEST_F(Unwatched, FailedCells_MoveTheFilesOfAnEarlierRunAside) {
         EXPECT_TRUE(exists(fmt::format("a_01.factor={}.ply", variant))) << "this one did not fail";
     }
     EXPECT_EQ(content_of(folder_ / "out/b_01.factor=1.ply.previous"), before);
-    EXPECT_THAT(result.out, HasSubstr("2 files of an earlier run, whose cells failed now, moved to *.previous"));
+    EXPECT_THAT(result.out, ContainsRegex("2 files of an earlier run.* moved to .*[.]previous"));
 
     const ProgramResult again = night("fail", {"--json"});
     EXPECT_THAT(again.err, Not(HasSubstr("earlier run"))) << "there is nothing left to move";
@@ -160,7 +161,7 @@ TEST_F(Unwatched, FileThatCannotBeMoved_IsAWarning) {
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.err, AllOf(HasSubstr("warning: a file of an earlier run is still there: '"),
                                   HasSubstr("b_01.factor=1.ply' cannot be moved to '")));
-    EXPECT_THAT(result.out, HasSubstr("1 file of an earlier run, whose cells failed now, could not be moved"));
+    EXPECT_THAT(result.out, ContainsRegex("1 file of an earlier run.* could not be moved"));
     EXPECT_TRUE(exists("b_01.factor=1.ply"));
     EXPECT_FALSE(exists("b_01.factor=2.ply"));
     EXPECT_EQ(count(recorded(2)["cells"], "outcome", "failed"), 2u);

@@ -8,6 +8,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -128,9 +129,9 @@ TEST_F(BatchVerdict, APartOfABatch_IsNoNightOfIt) {
 TEST_F(BatchVerdict, UnknownParts_AreRefused) {
     const ProgramResult scan = run_batch({"--scan", "scans/a_03.xyz"});
     EXPECT_EQ(scan.exit_code, 2);
-    EXPECT_THAT(scan.err, AllOf(HasSubstr("the batch has no scan 'scans/a_03.xyz'; did you mean 'scans/a_01.xyz'?"),
+    EXPECT_THAT(scan.err, AllOf(ContainsRegex("no scan 'scans/a_03.xyz'.*mean 'scans/a_01.xyz'"),
                                 HasSubstr("it has scans/a_01.xyz and scans/a_02.xyz")));
-    EXPECT_THAT(run_batch({"--only", "fin"}).err, HasSubstr("the batch has no variant 'fin'; did you mean 'fine'?"));
+    EXPECT_THAT(run_batch({"--only", "fin"}).err, ContainsRegex("no variant 'fin'.*mean 'fine'"));
     EXPECT_THAT(run_batch({"--workflow", "x"}).err, HasSubstr("the batch has no workflow 'x'"));
     EXPECT_THAT(outputs("."), Not(testing::Contains(testing::Key("out"))));
 }
@@ -139,7 +140,7 @@ TEST_F(BatchVerdict, AGateWithoutRecords_DoesNotPass) {
     folder_.write("out/scanmill.sqlite", "another program's file, long enough to be read as a database");
     const ProgramResult result = run_batch();
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, HasSubstr("the gate was not judged, because the run is not recorded"));
+    EXPECT_THAT(result.err, ContainsRegex("gate was not judged.* not recorded"));
 }
 
 TEST_F(BatchVerdict, WithoutGateAndAcceptance_NothingIsSaid) {

@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -115,7 +116,7 @@ TEST(Command, Modules_AreNeverTakenFromTheWorkingFolder) {
 TEST(Command, UnknownCommand_IsNamedWithTheNearest) {
     const ProgramResult refused = scanmill_program({"inf", "x.ply"});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("there is no command 'inf'; did you mean 'info'?"));
+    EXPECT_THAT(refused.err, ContainsRegex("no command 'inf'.*mean 'info'"));
 }
 
 TEST(Command, ShowExample_IsAWorkflowThatPassesCheck) {

@@ -8,6 +8,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -55,11 +56,9 @@ TEST_F(DryRun, ValueThatIsNotKept_HasTheReasonThatWasAskedFor) {
     write_scans("a", 1);
     const std::string scan = "scans/a_01.xyz";
     ASSERT_EQ(scanmill({"run", "w.yaml", scan, "-o", "out", "--keep", "never"}).exit_code, 0);
-    EXPECT_THAT(path_prefix(scan), HasSubstr("its 'points' is not in the cache: an earlier run did not store it"));
-    EXPECT_THAT(
-        path_prefix(scan, {"--keep", "never"}),
-        AllOf(HasSubstr("will run because its 'points' is not in the cache, and the policy 'never' stores none"),
-              Not(HasSubstr("quick"))));
+    EXPECT_THAT(path_prefix(scan), ContainsRegex("'points' is not in the cache.* earlier run"));
+    EXPECT_THAT(path_prefix(scan, {"--keep", "never"}),
+                AllOf(ContainsRegex("'points' is not in the cache.* 'never'"), Not(HasSubstr("quick"))));
 }
 
 TEST_F(DryRun, OneOfAThing_IsNamedAsOne) {
@@ -73,11 +72,10 @@ TEST_F(DryRun, OneOfAThing_IsNamedAsOne) {
     EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("w: 1 step, 1 variant\n"));
     folder_.write("one.xyz", "0 0 0\n1 1 nan\n");
     EXPECT_THAT(scanmill({"convert", "--drop-invalid", "one.xyz", "one.ply"}).err,
-                HasSubstr("warning: 1 point with a NaN, infinite or too distant coordinate was left out\n"));
+                ContainsRegex("warning: 1 point .*NaN.* left out"));
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 0 nan 0\nf 1 2 3\nf 1 2 4\n");
     EXPECT_THAT(scanmill({"convert", "--drop-invalid", "mesh.obj", "mesh.ply"}).err,
-                HasSubstr("warning: 2 points with a NaN, infinite or too distant coordinate were left out, and 1 "
-                          "triangle on them\n"));
+                ContainsRegex("warning: 2 points .*NaN.* left out.* 1 triangle"));
 }
 
 }  // namespace

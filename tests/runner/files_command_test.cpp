@@ -18,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -81,7 +82,7 @@ TEST_F(FilesCommand, InfoOfAMeshLargerThanMemory_IsRefusedAtOnce) {
          {std::vector<std::string>{"info", "huge.stl"}, {"convert", "huge.stl", "huge.ply"}}) {
         const ProgramResult result = scanmill(command);
         EXPECT_EQ(result.exit_code, 1);
-        EXPECT_THAT(result.err, AllOf(HasSubstr("error: 'huge.stl': it has 186 GiB; reading it needs up to 373 GiB"),
+        EXPECT_THAT(result.err, AllOf(ContainsRegex("error: 'huge.stl': .*186 GiB.* 373 GiB"),
                                       HasSubstr("hint: thin or split it")));
     }
 }

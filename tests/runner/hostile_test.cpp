@@ -19,6 +19,7 @@ namespace scanmill::test {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -203,7 +204,7 @@ TEST_F(Hostile, OutputNamesThatNoFileSystemTakes_AreRefusedBeforeTheRun) {
     folder_.write("w.yaml", workflow(std::string(300, 'x') + ".ply"));
     const ProgramResult ran = run_scan("scan.xyz");
     EXPECT_EQ(ran.exit_code, 2);
-    EXPECT_THAT(ran.err, HasSubstr("w.yaml:4:11: a file's name has 304 bytes; expected at most 255"));
+    EXPECT_THAT(ran.err, ContainsRegex("w.yaml:4:11: .*304 bytes.* 255"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     folder_.write("w.yaml", workflow("{scan}.ply"));
     expect_refused(run({"run", "w.yaml", "scan.xyz", "-o", std::string(300, 'x')}), 2, "File name too long");

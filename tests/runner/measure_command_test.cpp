@@ -18,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// A unit sphere, and the same moved by a tenth along x.
@@ -267,13 +268,12 @@ TEST_F(MeasureCommand, TruthIsNeverGuessed) {
                   "measure\n");
     const ProgramResult unsaid = scanmill({"check", "w.yaml"});
     EXPECT_EQ(unsaid.exit_code, 2);
-    EXPECT_THAT(unsaid.err + unsaid.out, HasSubstr("measure takes mesh or points at its port 'truth'; expected `in:"));
+    EXPECT_THAT(unsaid.err + unsaid.out, ContainsRegex("mesh or points .*port 'truth'.* `in:"));
     folder_.write(
         "w.yaml",
         "scanmill: 1\nname: w\ninputs:\n  scan: points\nsteps:\n  - delaunay:\n  - alpha-solid:\n  - measure:\n"
         "    in: {truth: delaunay}\n");
-    EXPECT_THAT(scanmill({"check", "w.yaml"}).err,
-                HasSubstr("'delaunay' is tets; the port 'truth' of measure takes mesh or points"));
+    EXPECT_THAT(scanmill({"check", "w.yaml"}).err, ContainsRegex("'delaunay' is tets.* 'truth' .*mesh or points"));
 }
 
 TEST_F(MeasureCommand, JsonIsNoScan) {

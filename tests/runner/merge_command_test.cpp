@@ -17,6 +17,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -62,8 +63,7 @@ TEST_F(MergeCommand, ViewWithoutPose_FailsNamingIt) {
     folder_.write("top.xyz", "0 0 0\n");
     const ProgramResult ran = run({"left.xyz", "top.xyz", "--set", "poses=v.conf", "-o", "out"});
     EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_THAT(ran.err,
-                AllOf(HasSubstr("no pose for input 1, whose frame is called 'top'"), HasSubstr("in step 'merge'")));
+    EXPECT_THAT(ran.err, AllOf(ContainsRegex("no pose for input 1.* 'top'"), HasSubstr("in step 'merge'")));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/merge-views.ply"));
 }
 
@@ -87,7 +87,7 @@ TEST_F(MergeCommand, ViewWithoutAUnit_IsTakenToBeInThatOfTheOthers_WhereverItSta
          {std::vector<std::string>{"mm.xyz", "left.xyz"}, std::vector<std::string>{"left.xyz", "mm.xyz"}}) {
         const ProgramResult ran = run({views[0], views[1], "-o", "out"});
         EXPECT_EQ(ran.exit_code, 0);
-        EXPECT_THAT(ran.err, HasSubstr("declares no unit; the unit of the other inputs is used: mm"));
+        EXPECT_THAT(ran.err, ContainsRegex("no unit.* other inputs .*mm"));
         EXPECT_EQ(read_points(folder_ / "out/merge-views.ply")->frame.unit, LengthUnit::millimetre);
     }
     EXPECT_THAT(run({"mm.xyz", "left.xyz", "--unit", "mm", "-o", "out"}).err, Not(HasSubstr("declares no unit")));

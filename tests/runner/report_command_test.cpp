@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -122,8 +123,7 @@ TEST_F(ReportCommand, Against_ComparesFolders) {
     EXPECT_THAT(report({"--against", "main:1"}).out, HasSubstr("in main"));
     EXPECT_EQ(report({"--against", "out:1"}).exit_code, 0);
     EXPECT_THAT(report({"--against", "main:7"}).err, HasSubstr("there is no run 7 in 'main'"));
-    EXPECT_THAT(report({"--against", "main:x"}).err,
-                HasSubstr("'x' is not the number of a run; expected DIR or DIR:RUN"));
+    EXPECT_THAT(report({"--against", "main:x"}).err, ContainsRegex("'x' .*number of a run.* DIR:RUN"));
     EXPECT_THAT(report({"--against", "nowhere"}).err, HasSubstr("there are no records in 'nowhere'"));
     std::filesystem::rename(folder_ / "main", folder_ / "main:1");
     EXPECT_EQ(report({"--against", "main:1"}).exit_code, 0) << "a folder whose name ends so";
@@ -154,7 +154,7 @@ TEST_F(ReportCommand, Metric_ChoosesTheTable) {
     EXPECT_THAT(report({"--metric", "seconds"}).out, HasSubstr("1.5 s"));
     const ProgramResult unknown = report({"--metric", "hausdorf"});
     EXPECT_EQ(unknown.exit_code, 2);
-    EXPECT_THAT(unknown.err, HasSubstr("no cell has the metric 'hausdorf'; did you mean 'hausdorff'?"));
+    EXPECT_THAT(unknown.err, ContainsRegex("metric 'hausdorf'.*mean 'hausdorff'"));
 }
 
 TEST_F(ReportCommand, RunsThatHaveNotEnded_AreReported) {
@@ -164,8 +164,8 @@ TEST_F(ReportCommand, RunsThatHaveNotEnded_AreReported) {
     EXPECT_THAT(report().err, HasSubstr("no run in 'out' has ended"));
     record(run_of_one(2, 0.5, rules));
     EXPECT_EQ(report().exit_code, 0);
-    EXPECT_THAT(report({"--run", "1"}).err, HasSubstr("run 1 in 'out' has not ended: it still runs, or it was killed"));
-    EXPECT_THAT(report({"--run", "9"}).err, HasSubstr("there is no run 9 in 'out'; there are 1 to 2"));
+    EXPECT_THAT(report({"--run", "1"}).err, HasSubstr("run 1 in 'out' has not ended"));
+    EXPECT_THAT(report({"--run", "9"}).err, ContainsRegex("no run 9 in 'out'.* 1 to 2"));
     record(run_of_one(3, 0.5, rules), "out", "");
     EXPECT_THAT(report().out, HasSubstr("run 3 of")) << "the reader must not take last night's report for tonight's";
     EXPECT_THAT(accept("3").err, HasSubstr("has not ended"));

@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// A scan of a sphere by the program itself, written to `file`.
@@ -63,8 +64,7 @@ TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
     derived.insert(derived.end(), {"--set", "size=auto"});
     const ProgramResult refused = scanmill_program(derived, {.folder = folder.path()});
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_THAT(refused.err,
-                HasSubstr("%diag is not defined here: the diagonal is 0, because the only point is at one position"));
+    EXPECT_THAT(refused.err, ContainsRegex("%diag is not defined.* diagonal is 0.* one position"));
     EXPECT_THAT(refused.err, HasSubstr("in the parameter 'tolerance'"));
 }
 

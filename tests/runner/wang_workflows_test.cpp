@@ -193,8 +193,7 @@ TEST_F(HybridWorkflow, MovingTwice_IsRefused) {
         {"run", twice.string(), "block.ply", "--in", "motion=out/block-to-machine.json", "-o", "moved"},
         {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_THAT(ran.err,
-                testing::HasSubstr("the value is already in the frame 'machine', to which the transform leads"));
+    EXPECT_THAT(ran.err, testing::HasSubstr("already in the frame 'machine'"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -73,8 +74,8 @@ TEST(GzipContent, OfManyTimesItsSize_IsWhole) {
 }
 
 TEST(GzipContent_Refuses, AnEmptyFile_AndEmptyContent) {
-    EXPECT_EQ(refusal_of("", "a.ply.gz"), "'a.ply.gz': is empty (0 bytes)");
-    EXPECT_EQ(refusal_of(gzipped(""), "a.ply.gz"), "'a.ply.gz': is empty: its gzip data hold 0 bytes");
+    EXPECT_THAT(refusal_of("", "a.ply.gz"), ContainsRegex("'a.ply.gz'.* empty .*0 bytes"));
+    EXPECT_THAT(refusal_of(gzipped(""), "a.ply.gz"), ContainsRegex("'a.ply.gz'.* gzip .* 0 bytes"));
 }
 
 TEST(GzipContent_Refuses, TruncatedData_AtEveryByte) {
@@ -86,7 +87,7 @@ TEST(GzipContent_Refuses, TruncatedData_AtEveryByte) {
 TEST(GzipContent_Refuses, DamagedData) {
     std::string damaged = gzipped(rows);
     damaged[damaged.size() - 6] ^= 1;  // in the check sum
-    EXPECT_THAT(refusal_of(damaged, "a.xyz.gz"), HasSubstr("its gzip data are damaged after 12 bytes of content"));
+    EXPECT_THAT(refusal_of(damaged, "a.xyz.gz"), ContainsRegex("gzip .*damaged.* 12 bytes"));
     EXPECT_THAT(refusal_of(gzipped(gzipped(rows)), "a.xyz.gz"), HasSubstr("compressed twice"));
 }
 
@@ -123,8 +124,7 @@ TEST(Utf16Text, OtherCharactersBecomeUtf8) {
 }
 
 TEST(Utf16Text_Refuses, AnOddNumberOfBytes) {
-    EXPECT_EQ(refusal_of(utf16(rows, false, true) + "\n", "a.xyz"),
-              "'a.xyz': is text in UTF-16 and has an odd number of bytes, 27");
+    EXPECT_THAT(refusal_of(utf16(rows, false, true) + "\n", "a.xyz"), ContainsRegex("'a.xyz'.* UTF-16 .* odd .* 27"));
 }
 
 TEST(Utf16Text, BinaryData_AreNotTakenForIt) {

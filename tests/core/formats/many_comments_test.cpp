@@ -6,6 +6,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::Contains;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -51,7 +52,7 @@ TEST(ManyComments, OfSeveralUnits_TheLastCounts_AndDifferentOnesAreReported) {
         const std::string text =
             "# unit m\n" + comments(count) + "# unit cm\n# unit parsec\n# unit of measure\n" + comments(3) + "1 2 3\n";
         EXPECT_EQ(frame_in(text, "a.xyz", &warnings).unit, LengthUnit::centimetre);
-        EXPECT_THAT(warnings.sentences, Contains(HasSubstr("both 'unit m' and 'unit cm'; the last counts"))) << count;
+        EXPECT_THAT(warnings.sentences, Contains(ContainsRegex("'unit m' and 'unit cm'.*last"))) << count;
         EXPECT_THAT(warnings.sentences, Contains(HasSubstr("the unit 'parsec' is unknown"))) << count;
     }
 }
@@ -66,8 +67,7 @@ TEST(ManyComments, OfUnitsAllAfterTheThousandth_DifferentOnesAreReported) {
     EXPECT_THAT(warnings_of("# unit cm\n# unit cm\n"), IsEmpty());
     for (const char* units : {"# unit mm\n# unit cm\n", "# unit mm\n# unit cm\n# unit cm\n",
                               "# unit cm\n# unit mm\n# unit cm\n", "# unit m\n# unit mm\n# unit mm\n# unit cm\n"})
-        EXPECT_THAT(warnings_of(units), ElementsAre(HasSubstr("both 'unit mm' and 'unit cm'; the last counts")))
-            << units;
+        EXPECT_THAT(warnings_of(units), ElementsAre(ContainsRegex("'unit mm' and 'unit cm'.*last"))) << units;
 }
 
 TEST(ManyComments, NamesAfterTheThousandth_AreReportedAsIgnored) {
@@ -78,8 +78,7 @@ TEST(ManyComments, NamesAfterTheThousandth_AreReportedAsIgnored) {
     EXPECT_THAT(warnings.sentences, IsEmpty());
     const auto far = points_in(comments(1000) + names + row, "a.xyz", &warnings);
     EXPECT_NE(far->columns.find("c4"), nullptr);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 comment before the numbers, after the first 1000, was not "
-                                                          "searched for the names of columns")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 comment .*1000.* names of columns")));
     warnings.sentences.clear();
     points_in(comments(1000) + "x y z weight\n" + row, "a.xyz", &warnings);
     points_in(row + comments(5000), "a.xyz", &warnings);

@@ -5,6 +5,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -25,19 +26,19 @@ std::string refused_with(std::size_t at, T number) {
 
 TEST(LasHeader_Refusals, SayWhatIsWrong) {
     EXPECT_THAT(refusal_of("LASF", "a.las"), HasSubstr("is 4 bytes long"));
-    EXPECT_THAT(refusal_of("LASER", "a.las"), HasSubstr("is not a LAS file: it begins with 'LASE'"));
+    EXPECT_THAT(refusal_of("LASER", "a.las"), ContainsRegex("not a LAS .*'LASE'"));
     EXPECT_THAT(refused_with(24, u8(2)), HasSubstr("is of LAS version 2.2"));
     EXPECT_THAT(refused_with(25, u8(5)), HasSubstr("is of LAS version 1.5"));
     EXPECT_THAT(refused_with(94, std::uint16_t(226)), HasSubstr("takes 227 bytes or more; it declares 226"));
     EXPECT_THAT(refused_with(94, std::uint16_t(999)), HasSubstr("it declares 999, and the file has 247"));
-    EXPECT_THAT(refused_with(96, u32(226)), HasSubstr("the points begin at byte 226, by the header of 227 bytes"));
+    EXPECT_THAT(refused_with(96, u32(226)), ContainsRegex("points .* byte 226.* 227 bytes"));
     EXPECT_THAT(refused_with(96, u32(248)), HasSubstr("the points begin at byte 248"));
-    EXPECT_THAT(refused_with(104, u8(11)), HasSubstr("points of format 11; LAS has 0 to 10"));
-    EXPECT_THAT(refused_with(105, std::uint16_t(19)), HasSubstr("take 20 bytes or more; the header declares 19"));
-    EXPECT_THAT(refused_with(131, 0.0), HasSubstr("the scale 0 and the offset 0 of x are invalid"));
+    EXPECT_THAT(refused_with(104, u8(11)), ContainsRegex("format 11.* 0 to 10"));
+    EXPECT_THAT(refused_with(105, std::uint16_t(19)), ContainsRegex("20 bytes.* 19"));
+    EXPECT_THAT(refused_with(131, 0.0), ContainsRegex("scale 0 .*offset 0 of x"));
     EXPECT_THAT(refused_with(171, std::numeric_limits<double>::infinity()), HasSubstr("the offset inf of z"));
-    EXPECT_THAT(refused_with(107, u32(0)), HasSubstr("holds no points: its header declares 0, and 20 bytes follow it"));
-    EXPECT_THAT(refused_with(107, u32(2)), HasSubstr("promises 2 points of 20 bytes; the 20 bytes from byte 227 on"));
+    EXPECT_THAT(refused_with(107, u32(0)), ContainsRegex("no points.* 0, .*20 bytes"));
+    EXPECT_THAT(refused_with(107, u32(2)), ContainsRegex("2 points of 20 bytes.* 20 bytes .*227"));
 }
 
 TEST(LasHeader_OfVersion14, IsLonger) {
@@ -45,7 +46,7 @@ TEST(LasHeader_OfVersion14, IsLonger) {
     las.minor_version = 4;
     std::string bytes = las.file();
     put_at(bytes, 94, std::uint16_t(374));
-    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("LAS 1.4 takes 375 bytes or more; it declares 374"));
+    EXPECT_THAT(refusal_of(bytes, "a.las"), ContainsRegex("LAS 1.4 .*375 bytes .*374"));
 }
 
 TEST(LasHeader_ManyPoints, TakeNoMemory) {
@@ -53,7 +54,7 @@ TEST(LasHeader_ManyPoints, TakeNoMemory) {
     las.minor_version = 4;
     std::string bytes = las.file();
     put_at(bytes, 247, u64(1) << 40);
-    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("promises 1099511627776 points of 20 bytes; the 20 bytes"));
+    EXPECT_THAT(refusal_of(bytes, "a.las"), ContainsRegex("1099511627776 points of 20 bytes.* 20 bytes"));
 }
 
 TEST(LasRecords, AreLeftOutAndReported_Once) {
@@ -62,8 +63,7 @@ TEST(LasRecords, AreLeftOutAndReported_Once) {
     las.add_record("LASF_Projection", 2112, "wkt");
     Warnings warnings;
     points_in(las.file(), "a.las", &warnings);
-    EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("2 variable length records were left out (hobu 1234, LASF_Projection 2112)")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("2 .*records .*hobu 1234, LASF_Projection 2112")));
 }
 
 TEST(LasRecords, ThatRunIntoThePoints_AreReported) {
@@ -127,13 +127,13 @@ TEST(LasExtraBytes, Undescribed_AreLeftOutAndReported) {
     put_at(las.points[0], 23, std::uint16_t(8));
     Warnings warnings;
     points_in(las.file(), "a.las", &warnings);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("6 extra bytes of each point are without a described type")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("6 extra bytes")));
     // Three bytes of type 0 before the described one.
     las.add_record("LASF_Spec", 4, las_extra(0, "opaque", 3) + las_extra(3, "known"));
     warnings.sentences.clear();
     const auto cloud = points_in(las.file(), "a.las", &warnings);
     EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("known")), ElementsAre(8));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("4 extra bytes of each point are without a described type")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("4 extra bytes")));
 }
 
 TEST(LasExtraBytes, BeyondThePoint_AreLeftOutAndReported) {
@@ -141,7 +141,7 @@ TEST(LasExtraBytes, BeyondThePoint_AreLeftOutAndReported) {
     las.add_record("LASF_Spec", 4, las_extra(3, "wide"));
     Warnings warnings;
     EXPECT_EQ(points_in(las.file(), "a.las", &warnings)->columns.find("wide"), nullptr);
-    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("'wide' would lie beyond the 21 bytes of a point")));
+    EXPECT_THAT(warnings.sentences, testing::Contains(ContainsRegex("'wide' .*beyond .*21 bytes")));
 }
 
 struct UnitCase {

@@ -5,6 +5,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -36,8 +37,7 @@ TEST(ObjReader_Normals, SharedOrRepeated_GoToTheirVertices) {
 TEST(ObjReader_Normals, ThatDifferAtACorner_AreLeftOutAndReported) {
     Warnings warnings;
     EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2//1 4//2 3//2\n", warnings), IsEmpty());
-    EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("the normals (vn) were left out: at 1 of 4 vertices they differ")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("normals .*left out.* 1 of 4 vertices .*differ")));
 }
 
 TEST(ObjReader_Normals, OfVerticesThatNoFaceNames_AreThoseOfTheirNumber_OrZeros) {
@@ -47,8 +47,8 @@ TEST(ObjReader_Normals, OfVerticesThatNoFaceNames_AreThoseOfTheirNumber_OrZeros)
     EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 3 2 4\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 of 2 normals (vn) were left out: no face names them"),
-                                                HasSubstr("1 of 4 vertices have none of the normals (vn)")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 of 2 normals .*left out.* no face"),
+                                                ContainsRegex("1 of 4 vertices .*none .*normals")));
 }
 
 TEST(ObjReader_Normals, ThatNoFaceNames_BelongToTheVerticesOfEqualNumber_IfAsMany) {
@@ -58,11 +58,10 @@ TEST(ObjReader_Normals, ThatNoFaceNames_BelongToTheVerticesOfEqualNumber_IfAsMan
     EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_THAT(normals_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nvn 0 0 3\nf 1 2 3\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 2, 0, 0, 3));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("no face names the 3 normals (vn): they were given to the")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("no face .*3 normals .*given")));
     warnings.sentences.clear();
     EXPECT_THAT(normals_of(square + "vn 0 0 1\nf 1 2 3\n", warnings), IsEmpty());
-    EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("the 1 normals (vn) were left out: no face names them, and there")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 normals .*left out.* no face")));
 }
 
 TEST(ObjReader_Normals, ThatAreNotThere_AreReported_AndTheFaceIsKept) {
@@ -70,8 +69,7 @@ TEST(ObjReader_Normals, ThatAreNotThere_AreReported_AndTheFaceIsKept) {
         Warnings warnings;
         EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//" + missing + "\n", warnings), IsEmpty());
         EXPECT_THAT(warnings.sentences,
-                    ElementsAre(HasSubstr("the normals (vn) were left out: 1 of 3 corners of faces name "
-                                          "a missing one; there are 2")));
+                    ElementsAre(ContainsRegex("normals .*left out.* 1 of 3 corners .*missing .* 2")));
     }
     Warnings warnings;
     EXPECT_THAT(normals_of(square + "f 1//1 2//1 3//1\n", warnings), IsEmpty());
@@ -94,17 +92,15 @@ TEST(ObjReader_Texture, AtASeam_IsLeftOutAndReported) {
     Warnings warnings;
     const auto mesh = mesh_in(square + "vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 2/2 4/2 3/2\n", "a.obj", &warnings);
     EXPECT_TRUE(mesh->vertex_columns.empty());
-    EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("the texture coordinates (vt) were left out: at 2 of 4 vertices they differ")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("texture .*left out.* 2 of 4 vertices .*differ")));
 }
 
 TEST(ObjReader_Lists, ThirdTextureNumberAndFurtherNumbers_AreReported) {
     Warnings warnings;
     mesh_in(square + "vt 0 0 0.5\nvt 0 0 0 0\nvn 0 0 1 1\nf 1/1/1 2/1/1 3/1/1\nf 2/2/1 4/2/1 3/1/1\n", "a.obj",
             &warnings);
-    EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("the third number of 1 texture coordinate (vt) was left out"),
-                            HasSubstr("2 rows have more numbers than OBJ allows there, first in line 6")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("third .* 1 texture coordinate .*left out"),
+                                                ContainsRegex("2 rows .*more numbers.* line 6")));
 }
 
 }  // namespace

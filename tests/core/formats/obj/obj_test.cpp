@@ -5,6 +5,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -36,8 +37,8 @@ TEST(ObjReader_Face, OfFourCorners_BecomesAFan_OfTwo_IsLeftOut) {
     Warnings warnings;
     const auto mesh = mesh_in(four_corners + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut"),
-                                                HasSubstr("3 faces of fewer than three corners were left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 face of more than three .*cut"),
+                                                ContainsRegex("3 faces of fewer than three .*left out")));
 }
 
 TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
@@ -62,14 +63,11 @@ TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
 }
 
 TEST(ObjReader_Vertex, WithoutThreeNumbers_IsRefusedWithItsLine) {
-    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0\n", "a.obj"),
-                HasSubstr("line 2: the row ends before a coordinate of a vertex (v)"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"),
-                HasSubstr("line 2: 'O' is not a number for a coordinate of a vertex (v)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0\n", "a.obj"), ContainsRegex("line 2: .*ends .*coordinate of a vertex"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"), ContainsRegex("line 2: 'O' .*coordinate of a vertex"));
     EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0 0 1 1 1 1 1\n", "a.obj"), HasSubstr("line 2: more than 4 numbers"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), HasSubstr("line 2: the row ends before a normal (vn)"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"),
-                HasSubstr("line 2: the row ends before a texture coordinate (vt)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), ContainsRegex("line 2: .*ends .*normal"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"), ContainsRegex("line 2: .*ends .*texture coordinate"));
 }
 
 TEST(ObjReader_Vertex, Weight_IsReportedUnlessItIsOne) {
@@ -77,7 +75,7 @@ TEST(ObjReader_Vertex, Weight_IsReportedUnlessItIsOne) {
     EXPECT_EQ(points_in("v 1 2 3 1.0\nv 4 5 6 1\n", "a.obj", &warnings)->positions[1], Vec3(4, 5, 6));
     EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_EQ(points_in("v 1 2 3 0.5\nv 4 5 6 1\n", "a.obj", &warnings)->positions[0], Vec3(1, 2, 3));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the weights of 1 of 2 vertices are not 1")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("weights of 1 of 2 vertices")));
 }
 
 TEST(ObjReader_Vertex, FarFromZero_KeepsItsLastDigits) {
@@ -103,7 +101,7 @@ TEST(ObjReader_Colours, FractionsOfBytesAreBytes_SoAreWholeNumbers_OthersAreDoub
 TEST(ObjReader_Colours, ThatNotEveryVertexHas_AreLeftOutAndReported) {
     Warnings warnings;
     EXPECT_TRUE(points_in("v 0 0 0 1 0 0\nv 1 0 0\n", "a.obj", &warnings)->columns.empty());
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the colours of 1 of 2 vertices were left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("colours of 1 of 2 vertices")));
 }
 
 TEST(ObjReader_Text, EveryLineEndAndByteOrderMark_ReadAlike) {
@@ -143,10 +141,10 @@ TEST(ObjReader_Text, Cut_IsReadOrRefused_ByWhatIsLeft) {
     EXPECT_EQ(mesh_in(whole, "a.obj")->triangles.size(), 2u);
     Warnings warnings;
     EXPECT_EQ(mesh_in(whole.substr(0, whole.size() - 2), "a.obj", &warnings)->triangles.size(), 1u);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of fewer than three corners was left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 face of fewer than three .*left out")));
     EXPECT_EQ(points_in(whole.substr(0, four_corners.size()), "a.obj")->size(), 4u);
     EXPECT_THAT(refusal_of(whole.substr(0, four_corners.size() - 3), "a.obj"),
-                HasSubstr("line 4: the row ends before a coordinate of a vertex (v)"));
+                ContainsRegex("line 4: .*ends .*coordinate of a vertex"));
 }
 
 TEST(ObjReader_WithoutVertices, IsRefused) {
@@ -159,8 +157,8 @@ TEST(ObjReader_WithoutVertices, IsRefused) {
 TEST(ObjReader_WithoutFaces, IsACloudOfAllVertices) {
     Warnings warnings;
     EXPECT_EQ(points_in(four_corners + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &warnings)->size(), 4u);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 lines (l) were left out, first in line 5"),
-                                                HasSubstr("1 row of points (p) was left out, first in line 7")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("2 lines .*left out.* line 5"),
+                                                ContainsRegex("1 row of points .*left out.* line 7")));
 }
 
 TEST(ObjReader_Divisions, AreReportedWhenThereIsMoreThanOne) {
@@ -171,21 +169,16 @@ TEST(ObjReader_Divisions, AreReportedWhenThereIsMoreThanOne) {
             "a.obj", &warnings);
     EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("3 groups (g), 2 materials (usemtl), 2 smoothing groups (s) were merged"),
-                            HasSubstr("1 material library (mtllib) was not read: materials and their images were left "
-                                      "out, the first of 'a.mtl'")));
+                            ContainsRegex("1 material library .*'a.mtl'")));
 }
 
 TEST(ObjReader_OtherRows, AreCountedAndReported) {
     Warnings warnings;
     mesh_in(three_corners + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj",
             &warnings);
-    EXPECT_THAT(
-        warnings.sentences,
-        ElementsAre(HasSubstr("3 rows were left out, first in line 5: free-form curves and surfaces are not read "
-                              "('vp', 'curv', 'end')"),
-                    HasSubstr("1 row was left out, first in line 8: they only concern the display ('lod')"),
-                    HasSubstr("3 rows were left out, first in line 9: OBJ has no such keyword "
-                              "('vc', 'Hello')")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("3 rows .*line 5: .*free-form .*'vp', 'curv', 'end'"),
+                                                ContainsRegex("1 row .*line 8: .*display .*'lod'"),
+                                                ContainsRegex("3 rows .*line 9: .*keyword .*'vc', 'Hello'")));
 }
 
 TEST(ObjReader_Content, IsRecognisedWithoutItsExtension) {

@@ -4,6 +4,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -22,7 +23,7 @@ TEST(OffReader_Plain, Polygon_BecomesAFan) {
     const auto mesh =
         mesh_in("OFF\n4 2 4\n" + right_triangle + "1 1 0\n4 0 1 3 2\n3 0 1 2 # shade\n", "a.off", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(ContainsRegex("1 face of more than three .*cut")));
 }
 
 TEST(OffReader_Plain, WithoutFaces_IsAPointCloud) {

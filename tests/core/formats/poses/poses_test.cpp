@@ -13,6 +13,7 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -61,8 +62,8 @@ TEST_F(PoseFiles, ByteOrderMark_IsNoPartOfThem) {
 
 TEST_F(PoseFiles, JsonOfAnyDepth_IsRefusedWhereItIsTooDeep) {
     for (const std::size_t depth : {20u, 1'000'000u})
-        EXPECT_EQ(sentence("{\"poses\": " + std::string(depth, '[') + std::string(depth, ']') + "}"),
-                  "is nested more than 16 levels deep");
+        EXPECT_THAT(sentence("{\"poses\": " + std::string(depth, '[') + std::string(depth, ']') + "}"),
+                    HasSubstr("16 levels"));
 }
 
 TEST_F(PoseFiles, Json_TurnsWithItsQuaternion) {
@@ -102,15 +103,14 @@ TEST_F(PoseFiles, QuaternionOfAnotherLength_IsRefused) {
 
 TEST_F(PoseFiles, BadConf_NamesTheLine) {
     const std::string good = "camera 0 0 0 0 0 0 1\nbmesh a.ply 0 0 0 0 0 0 1\n";
-    EXPECT_EQ(sentence(good + "bmseh b.ply 0 0 0 0 0 0 1\n"),
-              "line 3: 'bmseh' does not begin a line of poses; expected one of camera, mesh and bmesh; did you mean "
-              "'bmesh'?");
-    EXPECT_EQ(sentence(good + "\nbmesh\n"), "line 4: 'bmesh' without a file's name");
-    EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 0 0 1\n"),
-              "line 3: 6 words follow 'b.ply'; expected 7 numbers: tx ty tz qx qy qz qw");
+    EXPECT_THAT(sentence(good + "bmseh b.ply 0 0 0 0 0 0 1\n"),
+                ContainsRegex("line 3: 'bmseh'.* camera, mesh and bmesh.* mean 'bmesh'"));
+    EXPECT_THAT(sentence(good + "\nbmesh\n"), ContainsRegex("line 4: 'bmesh'.* name"));
+    EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 0 0 1\n"),
+                ContainsRegex("line 3: 6 .*'b.ply'.* 7 .*tx ty tz qx qy qz qw"));
     EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 0 0 0 1 0\n"), HasSubstr("line 3: 8 words"));
-    EXPECT_EQ(sentence(good + "bmesh b.ply 0 1,5 0 0 0 0 1\n"), "line 3: '1,5' is not a number for ty of 'b.ply'");
-    EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 nan 0 0 1\n"), "line 3: qx of 'b.ply' is nan; a pose is finite");
+    EXPECT_THAT(sentence(good + "bmesh b.ply 0 1,5 0 0 0 0 1\n"), ContainsRegex("line 3: '1,5' .* ty of 'b.ply'"));
+    EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 nan 0 0 1\n"), ContainsRegex("line 3: qx of 'b.ply'.* nan"));
     EXPECT_THAT(sentence("camera 0 0 0 0 0 0 1\n"), HasSubstr("holds no pose"));
 }
 
@@ -126,11 +126,11 @@ TEST_F(PoseFiles, BadJson_NamesThePlace) {
     EXPECT_THAT(sentence("{\"scanmill\": 1, \"pose\": []}"), HasSubstr("did you mean 'poses'?"));
     EXPECT_THAT(sentence(json("7")), HasSubstr("pose 1 is not an object"));
     const std::string good = "{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}";
-    EXPECT_EQ(sentence(json(good + ", {\"rotation\": [0, 0, 1], \"translation\": [0, 0, 0]}")),
-              "pose 2: 'rotation' is not a list of 4 numbers");
-    EXPECT_EQ(sentence(json("{\"rotation\": [0, 0, 0, 1]}")), "pose 1: 'translation' is not a list of 3 numbers");
-    EXPECT_EQ(sentence(json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, \"0\", 0]}")),
-              "pose 1: 'translation' is not a list of 3 numbers");
+    EXPECT_THAT(sentence(json(good + ", {\"rotation\": [0, 0, 1], \"translation\": [0, 0, 0]}")),
+                ContainsRegex("pose 2: 'rotation' .* 4 numbers"));
+    const auto no_translation = ContainsRegex("pose 1: 'translation' .* 3 numbers");
+    EXPECT_THAT(sentence(json("{\"rotation\": [0, 0, 0, 1]}")), no_translation);
+    EXPECT_THAT(sentence(json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, \"0\", 0]}")), no_translation);
     EXPECT_THAT(sentence(json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 1e999, 0]}")),
                 HasSubstr("contains a number that is too large"));
     EXPECT_THAT(sentence(json("{\"scan\": 1, \"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}")),

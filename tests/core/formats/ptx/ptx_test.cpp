@@ -6,6 +6,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -69,7 +70,7 @@ TEST(PtxReader, ColoursOfSomeScansOnly_AreLeftOutAndReported) {
     const auto cloud = points_in(scan("1", "1", still, "1 2 3 0.5\n") + scan("1", "1", still, "1 2 3 0.5 7 8 9\n"),
                                  "a.ptx", &warnings);
     EXPECT_EQ(cloud->columns.find("colour"), nullptr);
-    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("the colours of 1 of 2 points were left out")));
+    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("colours of 1 of 2 points")));
 }
 
 TEST(PtxReader, ColoursThatAreNoBytes_StayNumbers) {
@@ -83,7 +84,7 @@ TEST(PtxReader, MatrixThatScalesOrMirrors_IsAppliedAndReported) {
     Warnings warnings;
     const std::string scaled = "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n";
     EXPECT_EQ(world_of(*points_in(scan("1", "1", scaled, "1 2 3 0\n"), "a.ptx", &warnings), 0), Vec3(1, 2, 6));
-    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("not a rigid motion, its axes are 1, 1 and 2 long")));
+    EXPECT_THAT(warnings.sentences, testing::Contains(ContainsRegex("rigid .* 1, 1 and 2 long")));
     Warnings mirrored;
     const std::string mirror = "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
     EXPECT_EQ(world_of(*points_in(scan("1", "1", mirror, "1 2 3 0\n"), "a.ptx", &mirrored), 0), Vec3(-1, 2, 3));
@@ -94,8 +95,7 @@ TEST(PtxReader, MatrixThatIsNone_IsRefused) {
     const auto refused = [](const std::string& matrix) {
         return refusal_of(scan("1", "1", matrix, "1 2 3 0\n"), "a.ptx");
     };
-    EXPECT_THAT(refused("1 0 0 0\n0 1 0 0\n0 0 0 0\n0 0 0 1\n"),
-                HasSubstr("line 10: the matrix of scan 0 is singular"));
+    EXPECT_THAT(refused("1 0 0 0\n0 1 0 0\n0 0 0 0\n0 0 0 1\n"), ContainsRegex("line 10: .*scan 0 .*singular"));
     EXPECT_THAT(refused("1 0 0 0\n0 1 0 0\n1 1 0 0\n0 0 0 1\n"), HasSubstr("is singular"));
     EXPECT_THAT(refused("nan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"), HasSubstr("has a NaN or an infinity"));
     // The translation in the last column: the other convention.
@@ -105,12 +105,11 @@ TEST(PtxReader, MatrixThatIsNone_IsRefused) {
 
 TEST(PtxReader, Truncated_IsRefusedWithItsLine) {
     EXPECT_THAT(refusal_of(scan("2", "1", still, "1 2 3 0\n"), "a.ptx"),
-                HasSubstr("the text ends after 1 of 2 cells of scan 0"));
-    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"),
-                HasSubstr("the text ends after 3 of 10 lines of the header of scan 0"));
-    EXPECT_THAT(refusal_of("2\n", "a.ptx"), HasSubstr("the text ends after 1 of 10 lines of the header of scan 0"));
+                HasSubstr("ends after 1 of 2 cells of scan 0"));
+    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"), ContainsRegex("ends after 3 of 10 lines .*scan 0"));
+    EXPECT_THAT(refusal_of("2\n", "a.ptx"), ContainsRegex("ends after 1 of 10 lines .*scan 0"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 0\n") + "1\n", "a.ptx"),
-                HasSubstr("the text ends after 1 of 10 lines of the header of scan 1"));
+                ContainsRegex("ends after 1 of 10 lines .*scan 1"));
 }
 
 TEST(PtxReader, WrongRows_AreRefusedWithTheirLine) {
@@ -119,13 +118,13 @@ TEST(PtxReader, WrongRows_AreRefusedWithTheirLine) {
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 4 5\n"), "a.ptx"), HasSubstr("line 11: a cell of scan 0"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 4 5 6 7 8\n"), "a.ptx"), HasSubstr("line 11: a cell of"));
     EXPECT_THAT(refusal_of(scan("2", "1", still, "1 2 3 4\n1 2 3 4 5 6 7\n"), "a.ptx"),
-                HasSubstr("line 12: a cell has red, green and blue; those before in scan 0 have none"));
+                ContainsRegex("line 12: .*red, green and blue.* scan 0 .*none"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 x 4\n"), "a.ptx"), HasSubstr("line 11: 'x' is not a number"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 4\n5 6 7 8\n"), "a.ptx"),
-                HasSubstr("line 12: expected the number of columns of scan 1"));
+                ContainsRegex("line 12: .*columns of scan 1"));
     EXPECT_THAT(refusal_of("1\n-1\n" + scanner + still, "a.ptx"), HasSubstr("line 2: expected the number of rows"));
-    EXPECT_THAT(refusal_of("1\n1\n0 0\n", "a.ptx"), HasSubstr("line 3: the position of scan 0 has 2 numbers"));
-    EXPECT_THAT(refusal_of("1\n1\n0 0 0 0\n", "a.ptx"), HasSubstr("line 3: the position of scan 0 has 4 numbers"));
+    EXPECT_THAT(refusal_of("1\n1\n0 0\n", "a.ptx"), ContainsRegex("line 3: .*scan 0 has 2 "));
+    EXPECT_THAT(refusal_of("1\n1\n0 0 0 0\n", "a.ptx"), ContainsRegex("line 3: .*scan 0 has 4 "));
 }
 
 TEST(PtxReader, ManyCells_TakeNoMemory) {

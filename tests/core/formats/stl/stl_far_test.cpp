@@ -7,6 +7,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -91,8 +92,7 @@ TEST(StlThatCollapses, LeavesOutTrianglesWithoutArea_AndStaysClosed) {
     ASSERT_TRUE(topology(mesh).closed);
     const Written written(mesh);
     EXPECT_THAT(written.warnings.sentences,
-                ElementsAre(HasSubstr("1 vertex became equal to others in STL's single precision, and 2 triangles "
-                                      "collapsed and were left out")));
+                ElementsAre(ContainsRegex("1 vertex .*single precision.* 2 triangles .*left out")));
     EXPECT_TRUE(topology(*written.back()).closed);
     EXPECT_FALSE(written.was_opened);
 }
@@ -120,7 +120,7 @@ TEST(StlThatCollapses, AndIsNotClosedThen_IsReported) {
     const Written written(mesh);
     EXPECT_FALSE(topology(*written.back()).closed);
     EXPECT_TRUE(written.was_opened);
-    EXPECT_THAT(written.warnings.sentences, testing::Contains(HasSubstr("the mesh is closed and the STL file is not")));
+    EXPECT_THAT(written.warnings.sentences, testing::Contains(ContainsRegex("closed .*STL file is not")));
 }
 
 TEST(StlThatCollapses, Whole_IsRefused) {
@@ -133,7 +133,7 @@ TEST(StlThatCollapses, Whole_IsRefused) {
         Written{mesh};
         FAIL();
     } catch (const Error& error) {
-        EXPECT_THAT(error.sentence(), HasSubstr("in STL's single precision its only triangle has equal corners"));
+        EXPECT_THAT(error.sentence(), ContainsRegex("single precision .*only triangle .*equal"));
         EXPECT_THAT(error.hint(), HasSubstr("write PLY"));
     }
 }
@@ -142,15 +142,15 @@ TEST(StlThatCollapsed, IsRefusedWhenItIsRead) {
     const std::string facet =
         "facet normal 0 0 0\nouter loop\nvertex 1 1 1\nvertex 1 1 1\nvertex 2 1 1\nendloop\nendfacet\n";
     EXPECT_THAT(refusal_of("solid\n" + facet + facet + "endsolid\n", "a.stl"),
-                HasSubstr("holds no surface: all 2 facets of the STL file have two equal corners"));
+                ContainsRegex("no surface: all 2 facets .*equal"));
     EXPECT_THAT(refusal_of("solid\n" + facet + "endsolid\n", "a.stl"),
-                HasSubstr("holds no surface: the only facet of the STL file has two equal corners"));
+                ContainsRegex("no surface: .*only facet .*equal"));
     const std::string invalid =
         "facet normal 0 0 0\nouter loop\nvertex nan nan nan\nvertex nan nan nan\nvertex 2 1 1\nendloop\nendfacet\n";
     EXPECT_THAT(refusal_of("solid\n" + invalid + invalid + "endsolid\n", "a.stl"),
-                HasSubstr("all 2 facets of the STL file have two equal corners with NaN or infinite coordinates"));
+                ContainsRegex("all 2 facets .*equal .*NaN or infinite"));
     EXPECT_THAT(refusal_of("solid\n" + facet + invalid + facet + "endsolid\n", "a.stl"),
-                HasSubstr("all 3 facets of the STL file have two equal corners, 1 of them with NaN or infinite"));
+                ContainsRegex("all 3 facets .*equal .*1 of them .*NaN or infinite"));
 }
 
 TEST(StlLosses, ColumnsThatFiltersAdded_AreLeftOutWithoutAWarning_TheUsersAreNot) {

@@ -5,6 +5,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -41,10 +42,10 @@ TEST(DecimalCommas, AreNotStreamed_AndNeedNoExtension) {
 }
 
 TEST(DecimalCommas_Refuses, DecimalPointsInTheSameText) {
-    const std::string expected = "'a.csv': line 2: '5.5' has a decimal point, and line 1 has decimal commas";
-    EXPECT_EQ(refusal_of("1,5;2,5;3,5\n4;5.5;6\n", "a.csv"), expected);
-    EXPECT_EQ(refusal_of("1.5;2.5;3.5\n4,5;5,5;6,5\n", "a.csv"),
-              "'a.csv': line 1: '1.5' has a decimal point, and line 2 has decimal commas");
+    EXPECT_THAT(refusal_of("1,5;2,5;3,5\n4;5.5;6\n", "a.csv"),
+                ContainsRegex("'a.csv': line 2: '5.5' .*point.* line 1 .*comma"));
+    EXPECT_THAT(refusal_of("1.5;2.5;3.5\n4,5;5,5;6,5\n", "a.csv"),
+                ContainsRegex("'a.csv': line 1: '1.5' .*point.* line 2 .*comma"));
     EXPECT_THAT(refusal_of("1,5;2,5;3,5\n1.234,5;0;0\n", "a.csv"), HasSubstr("line 2: '1.234,5' has a decimal point"));
 }
 

@@ -5,6 +5,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -105,7 +106,7 @@ TEST(TextNames_Text, InAComment_OfNoAxes_AreAComment) {
 }
 
 TEST(TextNames_Refusals, SayTheLine) {
-    EXPECT_THAT(refusal_of("a,b,c\n1,2,3\n", "a.csv"), HasSubstr("line 1: 'a' is neither a row of numbers nor names"));
+    EXPECT_THAT(refusal_of("a,b,c\n1,2,3\n", "a.csv"), ContainsRegex("line 1: 'a' .*neither .*numbers nor names"));
     EXPECT_THAT(refusal_of("X,Y,Y,Z,x\n1,2,3,4,5\n", "a.csv"), HasSubstr("line 1: two columns are called 'Y'"));
     EXPECT_THAT(refusal_of("X,Y,Z,x\n1,2,3,4\n", "a.csv"), HasSubstr("two columns are called 'x'"));
     EXPECT_THAT(refusal_of("# c\nX,Y,Z,I\n1,2,3\n", "a.csv"), HasSubstr("line 3: 3 columns for 4 names"));

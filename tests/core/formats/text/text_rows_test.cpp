@@ -8,6 +8,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -18,11 +19,9 @@ TEST(TextRows_Bars, Separate) {
 }
 
 TEST(TextRows, TwoKindsOfSeparators_AreRefused) {
-    EXPECT_THAT(refusal_of("1,5;2,5\n", "a.csv"),
-                HasSubstr("line 1: commas separate some numbers and semicolons others"));
+    EXPECT_THAT(refusal_of("1,5;2,5\n", "a.csv"), ContainsRegex("line 1: commas .*semicolons"));
     EXPECT_THAT(refusal_of("1 2 3\n1.5|2.5 3.5\n", "a.csv"), HasSubstr("line 2: bars separate some numbers"));
-    EXPECT_THAT(refusal_of("1,5.5\t2.5\n", "a.csv"),
-                HasSubstr("line 1: commas separate some numbers and blanks others"));
+    EXPECT_THAT(refusal_of("1,5.5\t2.5\n", "a.csv"), ContainsRegex("line 1: commas .*blanks"));
 }
 
 TEST(TextRows, QuotedNumbers_AreNumbers) {
@@ -39,9 +38,8 @@ TEST(TextRows, Comments_BeginWithSlashesToo) {
 }
 
 TEST(TextRows_Width, ThatChanges_IsRefusedWithItsLine) {
-    EXPECT_THAT(refusal_of("1 2 3\n1 2 3\n1 2 3 4\n", "a.xyz"),
-                HasSubstr("line 3: found 4 columns; the rows before have 3"));
-    EXPECT_THAT(refusal_of("1 2 3 4\n7\n", "a.xyz"), HasSubstr("line 2: found 1 column; the rows before have 4"));
+    EXPECT_THAT(refusal_of("1 2 3\n1 2 3\n1 2 3 4\n", "a.xyz"), ContainsRegex("line 3: .*4 columns.* 3"));
+    EXPECT_THAT(refusal_of("1 2 3 4\n7\n", "a.xyz"), ContainsRegex("line 2: .*1 column.* 4"));
 }
 
 TEST(TextRows, CountAndNames_ComeInEitherOrder) {
@@ -127,9 +125,8 @@ TEST(TaggedPoints, RowsOfP_AreThePoints_OthersAreReported) {
 }
 
 TEST(TaggedPoints, Refusals_SayTheLine) {
-    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2\n", "a.pts"), HasSubstr("line 2: a point has three numbers, here are 2"));
-    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 3 4\n", "a.pts"),
-                HasSubstr("line 2: a point has three numbers, here are 4"));
+    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2\n", "a.pts"), ContainsRegex("line 2: .*three numbers.* 2"));
+    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 3 4\n", "a.pts"), ContainsRegex("line 2: .*three numbers.* 4"));
     EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 x\n", "a.pts"), HasSubstr("line 2: 'x' is not a number"));
     EXPECT_THAT(refusal_of("p 1 2 3\n1 2 3\n", "a.pts"), HasSubstr("line 2: '1' is not a letter"));
     EXPECT_THAT(refusal_of("d 1 2 3\n", "a.pts"), HasSubstr("no row begins with p"));
