@@ -8,6 +8,7 @@
 
 #include "decimate/errors.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/mesh/hole_triangulation.hpp"
 
 namespace scanmill::decimating {
 
@@ -32,7 +33,6 @@ struct HoleTriangle {
     SignedErrors errors;
 };
 
-/// Triangulates polygons by dynamic programming over all triangulations (Klincsek 1980).
 class HoleTriangulator {
 public:
     /// The triangulation with the least sum of costs; false if none is within the limits. The cost of an edge is the
@@ -45,9 +45,7 @@ public:
     const std::vector<HoleTriangle>& triangles() const { return triangles_; }
 
 private:
-    double cost(u32 i, u32 k, u32 j, SignedErrors& errors);
-    bool is_possible(u32 i, u32 j);
-    void collect(u32 i, u32 j);
+    double triangle_cost(u32 i, u32 k, u32 j);
     std::size_t index(u32 i, u32 j) const { return i * corners_.size() + j; }
 
     std::span<const HoleCorner> corners_;
@@ -55,9 +53,9 @@ private:
     double angle_sine_ = 0;
     const Limits* limits_ = nullptr;
     HoleErrors* judge_ = nullptr;
-    std::vector<double> least_;  ///< by chord: cost of the polygon beyond it
-    std::vector<u32> middles_;  ///< by chord: the third corner of its triangle
-    std::vector<SignedErrors> edges_, faces_;  ///< by chord: its own errors, and those of that triangle
+    HoleTriangulation best_;
+    SignedErrors face_;  ///< of the last triangle
+    std::vector<SignedErrors> edges_, faces_;  ///< by edge: its own errors, and those of the triangle beyond it
     std::vector<HoleTriangle> triangles_;
 };
 

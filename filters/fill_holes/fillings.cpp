@@ -3,13 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <optional>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/mesh/hole_triangulation.hpp"
 
 namespace scanmill {
 
@@ -182,53 +181,31 @@ bool Conflicts::resolve(const Assembly& all, std::vector<Hole>& holes, const Exe
 
 std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, const Nearby& around,
                                                      const Execution& execution) const {
-    const std::size_t count = loop.size();
-    constexpr double none = std::numeric_limits<double>::infinity();
-    std::vector<double> least(count * count, none);
-    std::vector<std::size_t> third(count * count, 0);
-    const auto vertex = [&](std::size_t i) { return half_edges::start(mesh_, loop[i]); };
-    const auto is_free = [&](std::size_t i, std::size_t j) {
-        return j == i + 1 || (i == 0 && j + 1 == count) || !loop_edges_.contains(key(vertex(i), vertex(j)));
+    constexpr double impossible = HoleTriangulation::impossible;
+    const auto vertex = [&](u32 i) { return half_edges::start(mesh_, loop[i]); };
+    // The loop has the surface on its left, the filling the other way round.
+    const auto triangle = [&](u32 i, u32 k, u32 j) { return Triangle{vertex(j), vertex(k), vertex(i)}; };
+    const auto edge_cost = [&](u32 i, u32 j) {
+        execution.check_cancelled();
+        return loop_edges_.contains(key(vertex(i), vertex(j))) ? impossible : 0;
+    };
+    const auto area = [&](u32 i, u32 k, u32 j) {
+        const auto [a, b, c] = triangle(i, k, j);
+        const auto& p = mesh_.positions;
+        return (p[b] - p[a]).cross(p[c] - p[a]).norm();
     };
     Array<u32> near;
-    const auto meets_mesh = [&](const Triangle& triangle) {
-        return around.any_meets(box_of(mesh_.positions, triangle), near, [&](const Triangle& other) {
-            return triangles_intersect(mesh_.positions.span(), joined(triangle), joined(other));
+    const auto is_free = [&](u32 i, u32 k, u32 j) {
+        const Triangle its = triangle(i, k, j);
+        return !around.any_meets(box_of(mesh_.positions, its), near, [&](const Triangle& other) {
+            return triangles_intersect(mesh_.positions.span(), joined(its), joined(other));
         });
     };
-    for (std::size_t i = 0; i + 1 < count; ++i) least[i * count + i + 1] = 0;
-    for (std::size_t span = 2; span < count; ++span) {
-        execution.check_cancelled();
-        for (std::size_t i = 0; i + span < count; ++i) {
-            const std::size_t j = i + span;
-            if (!is_free(i, j)) continue;
-            double& best = least[i * count + j];
-            for (std::size_t k = i + 1; k < j; ++k) {
-                const double parts = least[i * count + k] + least[k * count + j];
-                if (!(parts < best)) continue;
-                // The loop has the surface on its left, the filling the other way round.
-                const Triangle triangle{vertex(j), vertex(k), vertex(i)};
-                const Vec3 &a = mesh_.positions[triangle[0]], &b = mesh_.positions[triangle[1]],
-                           &c = mesh_.positions[triangle[2]];
-                const double area = parts + (b - a).cross(c - a).norm();
-                if (!(area < best) || meets_mesh(triangle)) continue;
-                best = area;
-                third[i * count + j] = k;
-            }
-        }
-    }
+    HoleTriangulation best;
     std::vector<Triangle> triangles;
-    if (least[count - 1] == none) return triangles;
-    std::vector<std::array<std::size_t, 2>> sections{{0, count - 1}};
-    while (!sections.empty()) {
-        const auto [i, j] = sections.back();
-        sections.pop_back();
-        if (j == i + 1) continue;
-        const std::size_t k = third[i * count + j];
-        triangles.push_back({vertex(j), vertex(k), vertex(i)});
-        sections.push_back({i, k});
-        sections.push_back({k, j});
-    }
+    if (best.solve(static_cast<u32>(loop.size()), edge_cost, area, is_free))
+        for (const auto& [i, k, j] : best.triangles()) triangles.push_back(triangle(i, k, j));
+    std::ranges::reverse(triangles);
     return triangles;
 }
 

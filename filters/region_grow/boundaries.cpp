@@ -66,20 +66,17 @@ ThinParts find_thin_parts(const Surface& surface, const Components& components, 
     if (surface.oriented) return parts;
     OppositeSheets sheets(surface, components);
     OppositeSheet least{std::numeric_limits<double>::infinity(), 0};
-    std::vector<bool> visited(surface.states.size(), false);
-    for (u32 begin = 0; begin < visited.size(); ++begin) {
-        if (surface.states[begin] != PointState::front || visited[begin]) continue;
+    surface.for_each_boundary_loop([&](const std::vector<u32>& loop) {
         context.check_cancelled();
         bool is_thin = false;
-        for (u32 vertex = begin; !visited[vertex]; vertex = surface.next_on_boundary(vertex)) {
-            visited[vertex] = true;
+        for (const u32 vertex : loop) {
             const OppositeSheet sheet = sheets.nearest(vertex);
             if (!(sheet.distance < thin_in_voxels * sheet.voxel)) continue;
             is_thin = true;
             least = std::min(least, sheet);
         }
         parts.loops += is_thin;
-    }
+    });
     if (parts.loops > 0) parts.least = least.distance, parts.voxel = least.voxel;
     return parts;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/mesh/hole_triangulation.hpp"
 
 namespace scanmill::growing {
 
@@ -35,92 +36,50 @@ constexpr double least_facing_of_long = 0.2;
 /// A lid with all corners around a hole's centre extends one radius from it; noise and folds add less than another one.
 constexpr double long_in_radii = 2;
 
-/// Dynamic programming over the corners of a hole, counter-clockwise as its triangles will be. The part between corners
-/// i and j consists of a triangle over the chord from i to j, and of the parts beyond its other two sides.
-class HoleTriangulation {
-public:
-    HoleTriangulation(const Surface& surface, const NearTriangles& near, const std::vector<u32>& corners,
-                      const TriangulationLimits& limits)
-        : surface_(surface),
-          near_(near),
-          corners_(corners),
-          limits_(limits),
-          parts_(corners_.size() * corners_.size()) {}
-
-    std::vector<Triangle> find() {
-        const std::size_t count = corners_.size();
-        for (std::size_t span = 2; span < count; ++span)
-            for (std::size_t i = 0; i + span < count; ++i) solve(i, i + span);
-        std::vector<Triangle> triangles;
-        if (part(0, count - 1).cost < infinity) collect(0, count - 1, triangles);
-        return triangles;
-    }
-
-private:
-    struct Part {
-        double cost = 0;
-        std::size_t apex = 0;
-        /// Of the triangle over the chord.
-        Vec3 normal = Vec3::Zero();
+/// Triangles of least total area that keep the limits and intersect none of `near`; empty if none were found.
+std::vector<Triangle> least_triangulation(const Surface& surface, const NearTriangles& near,
+                                          const std::vector<u32>& corners, const TriangulationLimits& limits) {
+    const auto& p = surface.positions;
+    const Fans& fans = surface.fans;
+    const u32 count = static_cast<u32>(corners.size());
+    std::vector<Vec3> normals(corners.size() * corners.size(), Vec3::Zero());  // of the triangle beyond edge i j
+    const auto edge_cost = [&](u32 i, u32 j) {
+        const u32 a = corners[i], b = corners[j];
+        const bool is_free = fans.left_of(a, b) == invalid_index && fans.left_of(b, a) == invalid_index;
+        return is_free && (p[b] - p[a]).norm() < limits.longest_edge ? 0 : infinity;
     };
-    Part& part(std::size_t i, std::size_t j) { return parts_[i * corners_.size() + j]; }
-
-    bool is_free(u32 a, u32 b) const {
-        return surface_.fans.left_of(a, b) == invalid_index && surface_.fans.left_of(b, a) == invalid_index;
-    }
-    bool is_short(u32 a, u32 b) const {
-        return (surface_.positions[b] - surface_.positions[a]).norm() < limits_.longest_edge;
-    }
-    bool is_last_edge(std::size_t i, std::size_t j) const { return i == 0 && j + 1 == corners_.size(); }
-
-    void solve(std::size_t i, std::size_t j) {
-        Part best{infinity, 0, Vec3::Zero()};
-        const u32 from = corners_[i], to = corners_[j];
-        if (is_last_edge(i, j) || (is_short(from, to) && is_free(from, to)))
-            for (std::size_t k = i + 1; k < j; ++k) {
-                const double others = part(i, k).cost + part(k, j).cost;
-                if (others < best.cost) try_apex(i, k, j, others, best);
-            }
-        part(i, j) = best;
-    }
-
-    void try_apex(std::size_t i, std::size_t k, std::size_t j, double others, Part& best) {
-        const auto& p = surface_.positions;
-        const Triangle triangle{corners_[i], corners_[k], corners_[j]};
-        const Vec3 u = p[triangle[1]] - p[triangle[0]], w = p[triangle[2]] - p[triangle[0]];
-        const Vec3 across = u.cross(w);
-        const double twice_area = across.norm();
-        if (!(twice_area > 0) || !(others + twice_area < best.cost)) return;
-        const double squared =
-            squared_enclosing_radius(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), twice_area);
-        if (squared > limits_.largest_radius * limits_.largest_radius) return;
-        const Vec3 normal = across / twice_area;
-        if (folds(i, k, normal) || folds(k, j, normal) || (is_last_edge(i, j) && folds(j, i, normal))) return;
-        if (near_.intersect(surface_, triangle)) return;
-        best = {others + twice_area, k, normal};
-    }
-
-    /// Whether the dihedral deviation at the edge, to the surface or to the part beyond, exceeds the limit.
-    bool folds(std::size_t i, std::size_t j, const Vec3& normal) {
-        const u32 from = corners_[j], to = corners_[i], third = surface_.fans.left_of(from, to);
-        if (third != invalid_index) return surface_.facet_normal(from, to, third).dot(normal) < limits_.dihedral_cosine;
-        return part(i, j).normal.dot(normal) < limits_.dihedral_cosine;
-    }
-
-    void collect(std::size_t i, std::size_t j, std::vector<Triangle>& triangles) {
-        if (j - i < 2) return;
-        const std::size_t k = part(i, j).apex;
-        collect(i, k, triangles);
-        collect(k, j, triangles);
-        triangles.push_back({corners_[i], corners_[k], corners_[j]});
-    }
-
-    const Surface& surface_;
-    const NearTriangles& near_;
-    const std::vector<u32>& corners_;
-    TriangulationLimits limits_;
-    std::vector<Part> parts_;
-};
+    const auto across = [&](u32 i, u32 k, u32 j) -> Vec3 {
+        return (p[corners[k]] - p[corners[i]]).cross(p[corners[j]] - p[corners[i]]);
+    };
+    const auto triangle_cost = [&](u32 i, u32 k, u32 j) {
+        const double twice_area = across(i, k, j).norm();
+        return twice_area > 0 ? twice_area : infinity;
+    };
+    // Whether the dihedral deviation at the edge, to the surface or to the part beyond, exceeds the limit.
+    const auto folds = [&](u32 i, u32 j, const Vec3& normal) {
+        const u32 from = corners[j], to = corners[i], third = fans.left_of(from, to);
+        const Vec3 other = third != invalid_index ? surface.facet_normal(from, to, third) : normals[i * count + j];
+        return other.dot(normal) < limits.dihedral_cosine;
+    };
+    const auto accepts = [&](u32 i, u32 k, u32 j) {
+        const Vec3 &a = p[corners[i]], &b = p[corners[k]], &c = p[corners[j]];
+        const Vec3 doubled = across(i, k, j);
+        const double twice_area = doubled.norm();
+        const double squared = squared_enclosing_radius((b - a).squaredNorm(), (c - a).squaredNorm(),
+                                                        ((c - a) - (b - a)).squaredNorm(), twice_area);
+        if (squared > limits.largest_radius * limits.largest_radius) return false;
+        const Vec3 normal = doubled / twice_area;
+        if (folds(i, k, normal) || folds(k, j, normal) || (j - i + 1 == count && folds(j, i, normal))) return false;
+        if (near.intersect(surface, {corners[i], corners[k], corners[j]})) return false;
+        normals[i * count + j] = normal;
+        return true;
+    };
+    HoleTriangulation best;
+    std::vector<Triangle> triangles;
+    if (best.solve(count, edge_cost, triangle_cost, accepts))
+        for (const auto& [i, k, j] : best.triangles()) triangles.push_back({corners[i], corners[k], corners[j]});
+    return triangles;
+}
 
 /// Increases with the angle from `ref` to `direction`, counter-clockwise seen against `axis`, from 0 to 4.
 double pseudo_angle(const Vec3& ref, const Vec3& direction, const Vec3& axis) {
@@ -268,18 +227,18 @@ private:
 
 bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners, const TriangulationLimits& limits) {
     const NearTriangles none;
-    return !HoleTriangulation(surface, none, corners, limits).find().empty();
+    return !least_triangulation(surface, none, corners, limits).empty();
 }
 
 std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const TriangulationLimits& limits) {
     // First without obstacles: there are few, and if there is no triangulation then, there is none with obstacles.
     const NearTriangles none;
-    std::vector<Triangle> triangles = HoleTriangulation(surface, none, corners, limits).find();
+    std::vector<Triangle> triangles = least_triangulation(surface, none, corners, limits);
     if (triangles.empty()) return {};
     near.gather_around(surface, corners);
     if (std::ranges::any_of(triangles, [&](const Triangle& t) { return near.intersect(surface, t); }))
-        triangles = HoleTriangulation(surface, near, corners, limits).find();
+        triangles = least_triangulation(surface, near, corners, limits);
     for (std::size_t i = 0; i < triangles.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (triangles_intersect(surface.positions, triangles[i], triangles[j])) return {};
@@ -324,18 +283,11 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Ex
 NarrowHoles close_narrow_holes(Surface& surface, const NarrowHoleLimits& limits, const Execution& execution) {
     NarrowHoles result;
     NarrowHoleCloser closer(surface, limits, execution);
-    std::vector<bool> visited(surface.states.size(), false);
-    for (u32 begin = 0; begin < visited.size(); ++begin) {
-        if (surface.states[begin] != PointState::front || visited[begin]) continue;
-        std::vector<u32> loop;
-        for (u32 vertex = begin; !visited[vertex]; vertex = surface.next_on_boundary(vertex)) {
-            visited[vertex] = true;
-            loop.push_back(vertex);
-        }
-        if (loop.size() < 3 || loop.size() > most_corners[0]) continue;
+    surface.for_each_boundary_loop([&](std::vector<u32> loop) {
+        if (loop.size() < 3 || loop.size() > most_corners[0]) return;
         std::ranges::reverse(loop);
         result.closed += closer.close(loop);
-    }
+    });
     result.replaced = closer.replaced.size();
     surface.drop(std::move(closer.replaced));
     return result;

@@ -164,6 +164,21 @@ struct Surface {
     bool face_apart(u32 a, u32 b) const { return oriented && normals[a].dot(normals[b]) <= 0; }
     /// The next vertex along the boundary, with the surface on the left. Pre: a boundary vertex with one fan.
     u32 next_on_boundary(u32 vertex) const;
+    /// Calls action(vertices) for every boundary loop, from its lowest vertex on; loops ascend by it. The action may
+    /// close the loop. Pre: every vertex has one fan.
+    template <class Action>
+    void for_each_boundary_loop(Action&& action) const {
+        std::vector<bool> visited(states.size(), false);
+        for (u32 begin = 0; begin < states.size(); ++begin) {
+            if (states[begin] != PointState::front || visited[begin]) continue;
+            std::vector<u32> loop;
+            for (u32 vertex = begin; !visited[vertex]; vertex = next_on_boundary(vertex)) {
+                visited[vertex] = true;
+                loop.push_back(vertex);
+            }
+            action(std::move(loop));
+        }
+    }
     /// The unit normal of triangle a b c.
     Vec3 facet_normal(u32 a, u32 b, u32 c) const;
 
