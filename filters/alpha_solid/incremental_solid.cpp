@@ -17,16 +17,12 @@ IncrementalSolid::IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::s
       many_(std::max<std::size_t>(few_suspects, tets.positions.size() / 16)),
       is_suspect_(tets.positions.size()),
       covered_(tets.positions.size()),
-      anchor_(tets.positions.size()),
-      slot_(tets.cells.size()) {
+      stars_(tets) {
     std::ranges::fill(covered_, u8(0));
-    std::ranges::fill(slot_, u64(0));
     suspect_only(suspects);
     for (u32 cell = 0; cell < labels_.size(); ++cell)
-        for (u32 vertex : tets_.cells[cell]) {
-            anchor_[vertex] = cell;
+        for (u32 vertex : tets_.cells[cell])
             if (labels_[cell] == solid) covered_count_ += std::exchange(covered_[vertex], u8(1)) == 0;
-        }
 }
 
 void IncrementalSolid::solidify(u32 seed) {
@@ -82,59 +78,6 @@ void IncrementalSolid::suspect_only(std::span<const u32> vertices) {
     for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
 }
 
-void IncrementalSolid::collect_star(u32 vertex) {
-    base_ += star_.size();
-    star_.assign(1, anchor_[vertex]);
-    slot_[anchor_[vertex]] = base_;
-    for (std::size_t i = 0; i < star_.size(); ++i) {
-        const u32 cell = star_[i];
-        for (int corner = 0; corner < 4; ++corner) {
-            const u32 across = tets_.neighbours[cell][corner];
-            if (tets_.cells[cell][corner] == vertex || across == TetMesh::outside_hull || slot_[across] >= base_)
-                continue;
-            slot_[across] = base_ + star_.size();
-            star_.push_back(across);
-        }
-    }
-}
-
-/// The boundary triangles are one fan exactly when the solid cells round the vertex are face-connected, and so are the
-/// others, the unbounded outside included.
-bool IncrementalSolid::is_manifold_at(u32 vertex) {
-    collect_star(vertex);
-    const u32 hull = static_cast<u32>(star_.size());
-    parent_.resize(hull + 1);
-    for (u32 i = 0; i <= hull; ++i) parent_[i] = i;
-    const auto find = [&](u32 i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    };
-    int solid_parts = 0, other_parts = 0;
-    bool at_hull = false;
-    for (u32 i = 0; i < hull; ++i) ++(labels_[star_[i]] == solid ? solid_parts : other_parts);
-    for (u32 i = 0; i < hull; ++i) {
-        const u32 cell = star_[i];
-        const bool is_solid = labels_[cell] == solid;
-        for (int corner = 0; corner < 4; ++corner) {
-            if (tets_.cells[cell][corner] == vertex) continue;
-            const u32 across = tets_.neighbours[cell][corner];
-            u32 other = hull;
-            if (across == TetMesh::outside_hull) {
-                if (!std::exchange(at_hull, true)) ++other_parts;
-                if (is_solid) continue;
-            } else {
-                if ((labels_[across] == solid) != is_solid) continue;
-                other = static_cast<u32>(slot_[across] - base_);
-            }
-            const u32 a = find(i), b = find(other);
-            if (a == b) continue;
-            parent_[a] = b;
-            --(is_solid ? solid_parts : other_parts);
-        }
-    }
-    return solid_parts == 0 || other_parts == 0 || (solid_parts == 1 && other_parts == 1);
-}
-
 void IncrementalSolid::repair(std::span<const double> price) {
     std::vector<u32> cheapest;
     while (true) {
@@ -148,9 +91,9 @@ void IncrementalSolid::repair(std::span<const double> price) {
             }
             still_non_manifold.push_back(vertex);
             double least = std::numeric_limits<double>::infinity();
-            for (u32 cell : star_)
+            for (u32 cell : stars_.cells())
                 if (labels_[cell] != solid) least = std::min(least, price[cell]);
-            for (u32 cell : star_)
+            for (u32 cell : stars_.cells())
                 if (labels_[cell] != solid && price[cell] == least) cheapest.push_back(cell);
         }
         suspects_ = std::move(still_non_manifold);

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "alpha_solid/components.hpp"
+#include "scanmill/geometry/tets/vertex_stars.hpp"
 
 namespace scanmill::alpha {
 
@@ -40,9 +41,7 @@ public:
 
 private:
     void solidify(u32 cell);
-    bool is_manifold_at(u32 vertex);
-    /// Cells round the vertex, into star_.
-    void collect_star(u32 vertex);
+    bool is_manifold_at(u32 vertex) { return stars_.surplus_parts(vertex, labels_) == 0; }
 
     const TetMesh& tets_;
     Array<u8> labels_;
@@ -54,13 +53,8 @@ private:
     std::size_t many_;
     Array<u8> is_suspect_, covered_;
     std::size_t covered_count_ = 0;
-    /// Any cell round each vertex.
-    Array<u32> anchor_;
-    /// slot_[c] - base_ is the index of cell c in star_, when not negative.
-    Array<u64> slot_;
-    u64 base_ = 1;
-    std::vector<u32> star_, stack_;
-    std::vector<u32> parent_;
+    VertexStars stars_;
+    std::vector<u32> stack_;
 };
 
 }  // namespace scanmill::alpha

@@ -8,6 +8,7 @@
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -17,7 +18,9 @@
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/tets/edge_walk.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
+#include "scanmill/geometry/tets/vertex_stars.hpp"
 
 namespace scanmill {
 
@@ -51,6 +54,7 @@ public:
         tets_.positions = Array<Vec3>(positions_.begin(), positions_.end());
         tets_.cells = std::move(canonical.cells);
         tets_.neighbours = std::move(canonical.neighbours);
+        stars_.emplace(tets_);
         claim();
         label();
         drop_specks();
@@ -61,7 +65,7 @@ public:
             const std::vector<Edge> pinched = edges_of_four(solid);
             if (pinched.empty()) return solid;
             for (const auto& [a, b] : pinched)
-                for (const u32 cell : cells_at(a))
+                for (const u32 cell : stars_->cells_at(a))
                     if (std::ranges::find(tets_.cells[cell], b) != tets_.cells[cell].end()) labels_[cell] = 1;
         }
         return {};
@@ -188,104 +192,56 @@ private:
 
     /// At vertices where the boundary is not one closed fan. Every change removes surplus parts, so this ends.
     void mend_vertices() {
-        const std::size_t vertices = positions_.size();
-        begin_.assign(vertices + 1, 0);
-        for (const Tetrahedron& cell : tets_.cells)
-            for (const u32 vertex : cell) ++begin_[vertex + 1];
-        for (std::size_t v = 0; v < vertices; ++v) begin_[v + 1] += begin_[v];
-        around_.resize(begin_.back());
-        std::vector<u32> at(begin_.begin(), begin_.end() - 1);
-        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
-            for (const u32 vertex : tets_.cells[cell]) around_[at[vertex]++] = cell;
         for (bool changes = true; changes;) {
             changes = false;
             context_.check_cancelled();
             const Array<Triangle> boundary = boundary_triangles(tets_, labels_, context_.threads());
-            for (const u32 vertex : boundary_defects(boundary, vertices, context_.threads()).vertices)
+            for (const u32 vertex : boundary_defects(boundary, positions_.size(), context_.threads()).vertices)
                 while (mend(vertex)) changes = true;
         }
-    }
-
-    /// The face-connected parts of a vertex's cells on either side.
-    struct Parts {
-        std::vector<u32> of;  ///< by cell at the vertex: its part, the smallest cell's number
-        std::vector<u32> inside, outside;  ///< `beyond` is the outside of the hull
-        static constexpr u32 beyond = hull;
-
-        /// The boundary is one closed fan, or none, if there are none.
-        std::size_t extra() const {
-            return (inside.empty() ? 0 : inside.size() - 1) + (outside.empty() ? 0 : outside.size() - 1);
-        }
-    };
-
-    std::span<const u32> cells_at(u32 vertex) const {
-        return std::span(around_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
-    }
-
-    Parts parts_at(u32 vertex) const {
-        const std::span<const u32> cells = cells_at(vertex);
-        const u32 count = static_cast<u32>(cells.size());
-        DisjointSets sets(count + 1);  // the last: beyond the hull
-        bool at_hull = false;
-        for (u32 i = 0; i < count; ++i)
-            for (std::size_t k = 0; k < 4; ++k) {
-                if (tets_.cells[cells[i]][k] == vertex) continue;
-                const u32 other = tets_.neighbours[cells[i]][k];
-                at_hull = at_hull || other == hull;
-                if (other == hull && labels_[cells[i]] == 0) sets.unite(i, count);
-                if (other != hull && labels_[other] == labels_[cells[i]])
-                    sets.unite(i, static_cast<u32>(std::ranges::lower_bound(cells, other) - cells.begin()));
-            }
-        Parts parts;
-        const u32 beyond = sets.find(count);
-        for (u32 i = 0; i < count; ++i) {
-            const u32 part = sets.find(i);
-            parts.of.push_back(at_hull && part == beyond ? Parts::beyond : part);
-            if (part == i && parts.of.back() != Parts::beyond)
-                (labels_[cells[i]] ? parts.inside : parts.outside).push_back(part);
-        }
-        if (at_hull) parts.outside.push_back(Parts::beyond);
-        return parts;
     }
 
     /// Lets the part of the vertex's cells change sides with which the most surplus parts, at all vertices, disappear;
     /// of equal ones that which the mesh claims least, then the smaller one. False if none disappears.
     bool mend(u32 vertex) {
-        const Parts parts = parts_at(vertex);
-        if (parts.extra() == 0) return false;
-        const std::span<const u32> cells = cells_at(vertex);
-        u32 best = hull;
+        if (stars_->surplus_parts(vertex, labels_) == 0) return false;
+        std::map<std::pair<bool, u32>, std::vector<u32>> parts;  // first those inside, ascending by lowest cell
+        for (u32 i = 0; i < stars_->cells().size(); ++i)
+            if (const u32 part = stars_->part(i), cell = stars_->cells()[i]; part != hull)
+                parts[{labels_[cell] == 0, part}].push_back(cell);
+        const std::vector<u32>* best = nullptr;
         std::tuple<std::ptrdiff_t, double, double> least{0, 0, 0};
-        for (const auto* side : {&parts.inside, &parts.outside})
-            for (const u32 part : *side) {
-                if (part == Parts::beyond) continue;
-                double claimed = 0, size = 0;
-                std::set<u32> corners;
-                for (u32 i = 0; i < cells.size(); ++i) {
-                    if (parts.of[i] != part) continue;
-                    const Claim& its = claims_[cells[i]];
-                    claimed += labels_[cells[i]] ? its.inside - its.outside : its.outside - its.inside;
-                    size += volume(cells[i]);
-                    corners.insert(tets_.cells[cells[i]].begin(), tets_.cells[cells[i]].end());
-                }
-                std::ptrdiff_t change = 0;
-                for (const u32 corner : corners) change -= static_cast<std::ptrdiff_t>(parts_at(corner).extra());
-                swap_sides(cells, parts, part);
-                for (const u32 corner : corners) change += static_cast<std::ptrdiff_t>(parts_at(corner).extra());
-                swap_sides(cells, parts, part);
-                if (change < 0 && (best == hull || std::tuple(change, claimed, size) < least)) {
-                    best = part;
-                    least = {change, claimed, size};
-                }
+        for (auto& [key, cells] : parts) {
+            std::ranges::sort(cells);
+            double claimed = 0, size = 0;
+            std::set<u32> corners;
+            for (const u32 cell : cells) {
+                const Claim& its = claims_[cell];
+                claimed += labels_[cell] ? its.inside - its.outside : its.outside - its.inside;
+                size += volume(cell);
+                corners.insert(tets_.cells[cell].begin(), tets_.cells[cell].end());
             }
-        if (best == hull) return false;
-        swap_sides(cells, parts, best);
-        return true;
+            const auto surplus = [&] {
+                std::ptrdiff_t sum = 0;
+                for (const u32 corner : corners)
+                    sum += static_cast<std::ptrdiff_t>(stars_->surplus_parts(corner, labels_));
+                return sum;
+            };
+            const std::ptrdiff_t before = surplus();
+            swap_sides(cells);
+            const std::ptrdiff_t change = surplus() - before;
+            swap_sides(cells);
+            if (change < 0 && (best == nullptr || std::tuple(change, claimed, size) < least)) {
+                best = &cells;
+                least = {change, claimed, size};
+            }
+        }
+        if (best != nullptr) swap_sides(*best);
+        return best != nullptr;
     }
 
-    void swap_sides(std::span<const u32> cells, const Parts& parts, u32 part) {
-        for (u32 i = 0; i < cells.size(); ++i)
-            if (parts.of[i] == part) labels_[cells[i]] ^= 1;
+    void swap_sides(std::span<const u32> cells) {
+        for (const u32 cell : cells) labels_[cell] ^= 1;
     }
 
     /// Face-connected parts of either side change sides if no component of the mesh has most of its triangles there.
@@ -314,18 +270,10 @@ private:
     /// The facet of the solid's boundary that joins the facet opposite to corner i of `cell` at the edge opposite to
     /// its corner `third`, on the side of the solid.
     std::array<u32, 2> mate(u32 cell, std::size_t i, u32 third) const {
-        u32 pivot = tets_.cells[cell][i];
-        for (u32 across = third;;) {
-            const auto k = static_cast<u32>(std::ranges::find(tets_.cells[cell], across) - tets_.cells[cell].begin());
-            const u32 other = tets_.neighbours[cell][k];
-            if (other == hull || labels_[other] == 0) return {cell, k};
-            // The facet between both has the edge and `pivot`; the next one lacks `pivot`.
-            const Tetrahedron& corners = tets_.cells[other];
-            const auto back = static_cast<std::size_t>(std::ranges::find(tets_.neighbours[other], cell) -
-                                                       tets_.neighbours[other].begin());
-            across = std::exchange(pivot, corners[back]);
-            cell = other;
-        }
+        const auto across = std::ranges::find(tets_.cells[cell], third) - tets_.cells[cell].begin();
+        EdgeWalk walk(tets_, cell, static_cast<int>(across), static_cast<int>(i));
+        while (walk.next() != hull && labels_[walk.next()] == 1) walk.step();
+        return {walk.cell(), static_cast<u32>(walk.across())};
     }
 
     /// Edges of four triangles, because a fan passes an edge twice; as vertices without copies.
@@ -403,8 +351,7 @@ private:
     std::vector<u8> labels_;
     std::vector<Triangle> suggested_;
     bool reversed_ = false;
-    /// The cells at every vertex, ascending.
-    std::vector<u32> begin_, around_;
+    std::optional<VertexStars> stars_;
 };
 
 }  // namespace

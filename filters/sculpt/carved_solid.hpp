@@ -14,49 +14,12 @@
 
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/tets.hpp"
+#include "scanmill/geometry/tets/edge_walk.hpp"
 
 namespace scanmill::sculpting {
 
 inline constexpr u32 none = TetMesh::outside_hull;
 using Without = std::span<const u32>;
-
-/// Turns about an edge of a cell, from facet to facet.
-class EdgeWalk {
-public:
-    /// Starts at `cell` and first crosses the facet opposite to its corner `across`; the edge joins the two corners
-    /// that are neither `across` nor `kept`.
-    EdgeWalk(const TetMesh& tets, u32 cell, int across, int kept)
-        : tets_(tets),
-          cell_(cell),
-          across_(across),
-          kept_(tets.cells[cell][kept]),
-          others_(tets.cells[cell][across] ^ kept_ ^ sum(cell)) {}
-
-    u32 cell() const { return cell_; }
-    /// The corner opposite to the next facet.
-    int across() const { return across_; }
-    u32 next() const { return tets_.neighbours[cell_][across_]; }
-    /// Pre: next() is a cell.
-    void step() {
-        cell_ = next();
-        const Tetrahedron& corners = tets_.cells[cell_];
-        across_ = corners[0] == kept_ ? 0 : corners[1] == kept_ ? 1 : corners[2] == kept_ ? 2 : 3;
-        // The exclusive or of three corners and of all four differ by the fourth corner.
-        kept_ = sum(cell_) ^ others_ ^ kept_;
-    }
-
-private:
-    u32 sum(u32 cell) const {
-        const Tetrahedron& corners = tets_.cells[cell];
-        return corners[0] ^ corners[1] ^ corners[2] ^ corners[3];
-    }
-
-    const TetMesh& tets_;
-    u32 cell_;
-    int across_;
-    /// The vertex of the next facet that is not on the edge; the exclusive or of the edge's two vertices.
-    u32 kept_, others_;
-};
 
 class CarvedSolid {
 public:

@@ -18,32 +18,9 @@ Openings::Openings(CarvedSolid& solid, const StepCriteria& criteria)
       tets_(solid.tets()),
       criteria_(criteria) {}
 
-void Openings::find_anchors() {
-    if (!anchor_.empty()) return;
-    anchor_.resize(tets_.positions.size());
-    std::ranges::fill(anchor_, none);
-    visited_.resize(tets_.cells.size());
-    std::ranges::fill(visited_, 0);
-    // All cells at an interior vertex are solid, as long as it is interior.
-    for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
-        if (solid_.has(cell))
-            for (u32 vertex : tets_.cells[cell]) anchor_[vertex] = cell;
-}
-
-const std::vector<u32>& Openings::star(u32 vertex) {
-    ++visit_;
-    star_.assign(1, anchor_[vertex]);
-    visited_[anchor_[vertex]] = visit_;
-    for (std::size_t i = 0; i < star_.size(); ++i) {
-        const u32 cell = star_[i];
-        for (int corner = 0; corner < 4; ++corner) {
-            const u32 across = tets_.neighbours[cell][corner];
-            if (tets_.cells[cell][corner] == vertex || visited_[across] == visit_) continue;
-            visited_[across] = visit_;
-            star_.push_back(across);
-        }
-    }
-    return star_;
+VertexStars& Openings::stars() {
+    if (!stars_) stars_.emplace(tets_);
+    return *stars_;
 }
 
 void Openings::consider_after(Opening& best, u32 first, u32 second, u32 below, double gain_of_first) {
@@ -79,16 +56,15 @@ void Openings::consider(Opening& best, u32 vertex, u32 below) {
 
 Opening Openings::best_for(u32 vertex) {
     Opening best;
-    for (u32 below : star(vertex)) consider(best, vertex, below);
+    for (u32 below : stars().cells_at(vertex)) consider(best, vertex, below);
     return best;
 }
 
 void Openings::start_round() {
-    find_anchors();
     round_.clear();
     next_in_round_ = 0;
     reached_ = false;
-    for (u32 vertex = 0; vertex < anchor_.size(); ++vertex) {
+    for (u32 vertex = 0; vertex < tets_.positions.size(); ++vertex) {
         if (!is_interior(vertex)) continue;
         const Opening opening = best_for(vertex);
         if (opening.second != none) round_.push_back({opening.gain, vertex});
@@ -115,7 +91,7 @@ Opening Openings::next() {
 }
 
 Openings::Reason Openings::reason(u32 vertex) {
-    for (u32 below : star(vertex)) {
+    for (u32 below : stars().cells_at(vertex)) {
         const u32 over = tets_.neighbours[below][corner_of(tets_.cells[below], vertex)];
         if (solid_.open_facets(over) != 0) return Reason::blocked;
     }
@@ -123,9 +99,8 @@ Openings::Reason Openings::reason(u32 vertex) {
 }
 
 Array<u32> Openings::interior_points() {
-    find_anchors();
     Array<u32> points;
-    for (u32 vertex = 0; vertex < anchor_.size(); ++vertex)
+    for (u32 vertex = 0; vertex < tets_.positions.size(); ++vertex)
         if (is_interior(vertex)) points.push_back(vertex);
     return points;
 }

@@ -2,8 +2,10 @@
 #pragma once
 /// Openings: one or two flips, whatever they cost, after which an exposing step brings a deeper point to the boundary.
 
+#include <optional>
 #include <vector>
 
+#include "scanmill/geometry/tets/vertex_stars.hpp"
 #include "sculpt/criteria.hpp"
 
 namespace scanmill::sculpting {
@@ -36,14 +38,12 @@ private:
         u32 vertex;
     };
 
-    void find_anchors();
     void start_round();
-    /// The cells at an interior vertex.
-    const std::vector<u32>& star(u32 vertex);
+    VertexStars& stars();
     Opening best_for(u32 vertex);
     void consider(Opening& best, u32 vertex, u32 below);
     void consider_after(Opening& best, u32 first, u32 second, u32 below, double gain_of_first);
-    bool is_interior(u32 vertex) const { return anchor_[vertex] != none && !solid_.is_on_boundary(vertex); }
+    bool is_interior(u32 vertex) { return !solid_.is_on_boundary(vertex) && solid_.has(stars().any_cell(vertex)); }
 
     CarvedSolid& solid_;
     const TetMesh& tets_;
@@ -51,10 +51,7 @@ private:
     std::vector<Candidate> round_;
     std::size_t next_in_round_ = 0;
     bool reached_ = true;
-    /// Per vertex a cell of the solid at it; per cell the time of the last visit. Empty until they are needed.
-    Array<u32> anchor_, visited_;
-    u32 visit_ = 0;
-    std::vector<u32> star_;
+    std::optional<VertexStars> stars_;  ///< empty until it is needed
 };
 
 }  // namespace scanmill::sculpting

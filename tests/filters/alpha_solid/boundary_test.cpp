@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 
 #include "alpha_solid/components.hpp"
 #include "alpha_solid/incremental_solid.hpp"
@@ -12,6 +14,7 @@
 #include "filters/alpha_solid/cases.hpp"
 #include "scanmill/data/topology.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
+#include "scanmill/geometry/tets/vertex_stars.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -54,6 +57,46 @@ TEST(BoundaryDefects, OfRandomCellSets_AgreeWithTheMeshTopology) {
             EXPECT_EQ(incremental.verdict(),
                       bad ? IncrementalSolid::Verdict::not_manifold : IncrementalSolid::Verdict::manifold);
         }
+    }
+}
+
+TEST(VertexStars, PartsOfRandomCellSets_AreFaceConnected_AndNamedByTheirLowestCell) {
+    Random random(6);
+    const TetMesh tets = tets_of(random_cube(200, 3));
+    Array<u8> labels(tets.cells.size());
+    for (u8& label : labels) label = random.uniform() < 0.5;
+    VertexStars stars(tets);
+    const u32 beyond = VertexStars::none;
+    for (u32 vertex = 0; vertex < tets.positions.size(); ++vertex) {
+        std::map<u32, u32> expected;  // by cell at the vertex, and `beyond`
+        for (u32 cell = 0; cell < tets.cells.size(); ++cell)
+            if (std::ranges::find(tets.cells[cell], vertex) != tets.cells[cell].end()) expected[cell] = cell;
+        std::vector<u32> cells;
+        for (const auto& [cell, part] : expected) cells.push_back(cell);
+        bool at_hull = false;
+        for (bool changes = true; changes;) {
+            changes = false;
+            for (const u32 cell : cells)
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const u32 across = tets.neighbours[cell][i];
+                    if (tets.cells[cell][i] == vertex) continue;
+                    at_hull = at_hull || across == beyond;
+                    u32 part = expected[cell];
+                    if (across == beyond && labels[cell] == 0) part = beyond;
+                    if (across != beyond && labels[across] == labels[cell])
+                        part = part == beyond || expected[across] == beyond ? beyond : std::min(part, expected[across]);
+                    changes = changes || part != expected[cell];
+                    expected[cell] = part;
+                }
+        }
+        std::array<std::set<u32>, 2> parts;
+        if (at_hull) parts[0].insert(beyond);
+        for (const u32 cell : cells) parts[labels[cell]].insert(expected[cell]);
+        std::size_t surplus = 0;
+        for (const std::set<u32>& of : parts) surplus += of.empty() ? 0 : of.size() - 1;
+        EXPECT_EQ(stars.surplus_parts(vertex, labels), surplus) << vertex;
+        ASSERT_EQ(stars.cells().size(), cells.size());
+        for (u32 i = 0; i < cells.size(); ++i) EXPECT_EQ(stars.part(i), expected.at(stars.cells()[i])) << vertex;
     }
 }
 
