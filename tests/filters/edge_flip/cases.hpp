@@ -228,6 +228,15 @@ private:
     EdgeFlipParams params_;
 };
 
+/// The half-edge from a to b; EditableMesh::none if there is none.
+inline u32 half_edge_between(const EditableMesh& mesh, u32 a, u32 b) {
+    u32 found = EditableMesh::none;
+    mesh.for_each_around(a, [&](u32 h) {
+        if (mesh.end(h) == b) found = h;
+    });
+    return found;
+}
+
 /// Edges that fulfil the criterion, and how many of them each rule forbids. `flippable`: no rule does.
 struct Census {
     BlockedEdges blocked;

@@ -113,7 +113,7 @@ TEST(EdgeFlipOfAnyMesh, EveryFlipIsAllowed_NoneIsLeftOut_AndBlockedEdgesAreCount
             TriangleMesh now = mesh;
             for (const auto& [a, b, c, d] : result.flips) {
                 Rules rules(now, params);
-                const u32 h = rules.half_edges.between(a, b);
+                const u32 h = half_edge_between(rules.half_edges, a, b);
                 ASSERT_NE(h, EditableMesh::none);
                 ASSERT_EQ(rules.half_edges.apex(h), c);
                 ASSERT_EQ(rules.half_edges.apex(rules.half_edges.opposite(h)), d);
@@ -161,7 +161,7 @@ TEST(EdgeFlipOfAnyMesh, SortedAnglesGrowWithEveryFlip_AndWithShorterTheLengthFal
             double length = total_length(now);
             EXPECT_NEAR(result.min_angle_before, angles.front(), 1e-14) << name;
             for (const auto& [a, b, c, d] : result.flips) {
-                replay.flip(replay.between(a, b));
+                replay.flip(half_edge_between(replay, a, b));
                 now.triangles = replay.compact_triangles();
                 if (criterion == Criterion::delaunay) {
                     std::vector<double> then = sorted_angles(now);

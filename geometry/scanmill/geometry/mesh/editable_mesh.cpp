@@ -63,17 +63,6 @@ u32 EditableMesh::valence(u32 vertex) const {
     return edges;
 }
 
-u32 EditableMesh::between(u32 a, u32 b) const {
-    const u32 begin = first_[a];
-    if (begin == none) return none;
-    u32 half_edge = begin;
-    do {
-        if (end(half_edge) == b) return half_edge;
-        half_edge = next_around(half_edge);
-    } while (half_edge != begin && half_edge != half_edges::boundary);
-    return none;
-}
-
 bool EditableMesh::has_edge(u32 a, u32 b) const {
     if (!is_used(a)) return false;
     bool found = false;
@@ -188,63 +177,6 @@ void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulatio
         if (is_boundary(along) || !was_boundary_vertex[a]) first_[vertices[a]] = along;
     }
     first_[vertex] = none;
-}
-
-void EditableMesh::split_edge(u32 half_edge, u32 vertex) {
-    assert(first_[vertex] == none);
-    const auto add_row = [&](u32 a, u32 b, u32 c) {
-        corners_.insert(corners_.end(), {a, b, c});
-        opposite_.insert(opposite_.end(), 3, half_edges::boundary);
-        ++triangles_;
-        return static_cast<u32>(corners_.size() - 3);
-    };
-    // (a, b, c) becomes (a, v, c) and the new (v, b, c); likewise the neighbour (b, a, d): (b, v, d) and (v, a, d).
-    const u32 other = opposite_[half_edge];
-    const u32 b = end(half_edge), c = apex(half_edge);
-    const u32 bc = after(half_edge), beyond_bc = opposite_[bc];
-    const u32 added = add_row(vertex, b, c);
-    corners_[bc] = vertex;
-    link(added + 1, beyond_bc);
-    link(added + 2, bc);
-    if (first_[b] == bc) first_[b] = added + 1;
-    first_[vertex] = added;
-    if (other == half_edges::boundary) {
-        link(added, half_edges::boundary);
-        return;
-    }
-    const u32 a = corners_[half_edge], d = apex(other);
-    const u32 ad = after(other), beyond_ad = opposite_[ad];
-    const u32 other_added = add_row(vertex, a, d);
-    corners_[ad] = vertex;
-    link(other_added + 1, beyond_ad);
-    link(other_added + 2, ad);
-    link(half_edge, other_added);
-    link(added, other);
-    if (first_[a] == ad) first_[a] = other_added + 1;
-}
-
-void EditableMesh::split_triangle(u32 row, u32 vertex) {
-    assert(first_[vertex] == none);
-    const Triangle t = triangle(row);
-    const u32 beyond_bc = opposite_[3 * row + 1], beyond_ca = opposite_[3 * row + 2];
-    const u32 second = static_cast<u32>(corners_.size()), third = second + 3;
-    corners_.insert(corners_.end(), {t[1], t[2], vertex, t[2], t[0], vertex});
-    opposite_.insert(opposite_.end(), 6, half_edges::boundary);
-    triangles_ += 2;
-    corners_[3 * row + 2] = vertex;
-    link(second, beyond_bc);
-    link(third, beyond_ca);
-    link(3 * row + 1, second + 2);
-    link(second + 1, third + 2);
-    link(third + 1, 3 * row + 2);
-    if (first_[t[1]] == 3 * row + 1) first_[t[1]] = second;
-    if (first_[t[2]] == 3 * row + 2) first_[t[2]] = third;
-    first_[vertex] = 3 * row + 2;
-}
-
-u32 EditableMesh::add_vertex() {
-    first_.push_back(none);
-    return static_cast<u32>(first_.size() - 1);
 }
 
 Array<Triangle> EditableMesh::compact_triangles() const {

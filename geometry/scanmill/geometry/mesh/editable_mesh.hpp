@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A triangle mesh that is edited: edges are flipped and split, faces split, vertices removed.
+/// A triangle mesh that is edited: edges are flipped, vertices removed.
 ///
 /// Half-edges are numbered as in half_edges.hpp: half-edge 3 t + i goes from corner i of triangle t to the next one. An
 /// edit that makes as many triangles as it removes, or fewer, uses the rows of the removed ones; rows that are left
@@ -63,8 +63,6 @@ public:
     }
     /// Edges at the vertex.
     u32 valence(u32 vertex) const;
-    /// The half-edge from a to b; `none` if there is none. (The edge may exist as the half-edge from b to a.)
-    u32 between(u32 a, u32 b) const;
     bool has_edge(u32 a, u32 b) const;
 
     /// Whether the two triangles at the edge may be replaced by the two at the other diagonal: the edge is interior,
@@ -87,13 +85,6 @@ public:
     /// first, a boundary edge. Appends the rows of the new triangles, in the order given.
     /// Pre: can_remove(); the triangles are counter-clockwise and triangulate the polygon of the ring.
     void remove(u32 vertex, std::span<const RingTriangle> triangulation, std::vector<u32>& new_rows);
-
-    /// Splits the edge by a vertex without triangles, and the one or two triangles there into two each, in new rows.
-    void split_edge(u32 half_edge, u32 vertex);
-    /// Splits the triangle into three by a vertex without triangles; two rows are new.
-    void split_triangle(u32 row, u32 vertex);
-    /// Adds a vertex without triangles; returns its number.
-    u32 add_vertex();
 
     /// The triangles that are not empty, by row.
     Array<Triangle> compact_triangles() const;
