@@ -494,13 +494,59 @@ void require_usable(const TriangleMesh& mesh, const RepairParams& params) {
     require_finite(mesh.positions.span(), "vertices");
 }
 
+/// Whether the edges that columns and sharp edges describe are edges of triangles, each once.
+bool has_described_edges(const TriangleMesh& mesh) {
+    for (const Buffer<Edge>& described : {mesh.edges, mesh.sharp_edges}) {
+        std::vector<Edge> missing(described.begin(), described.end());
+        std::ranges::sort(missing);
+        if (std::ranges::adjacent_find(missing) != missing.end()) return false;
+        std::vector<bool> found(missing.size(), false);
+        for (u32 h = 0; !missing.empty() && h < 3 * mesh.triangles.size(); ++h) {
+            const Edge edge = make_edge(half_edges::start(mesh, h), half_edges::end(mesh, h));
+            const auto at = std::ranges::lower_bound(missing, edge);
+            if (at != missing.end() && *at == edge) found[static_cast<std::size_t>(at - missing.begin())] = true;
+        }
+        if (std::ranges::find(found, false) != found.end()) return false;
+    }
+    return true;
+}
+
+/// Whether nothing is to be done; false also in rare cases where a closer look would find that.
+bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairParams& params) {
+    if (!shape.genus || shape.unused_vertices > 0) return false;
+    if (params.stitch.value() > 0 && !shape.closed) return false;
+    if (params.min_component.value() > 0 && shape.components > 1) return false;
+    const std::span<const Vec3> positions = mesh.positions.span();
+    const Array<u32> lowest = lowest_at_position(positions);
+    for (u32 v = 0; v < lowest.size(); ++v)
+        if (lowest[v] != v) return false;
+    std::vector<u32> corners(positions.size(), 0);
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 v : triangle) ++corners[v];
+    double volume = 0, sum = 0;
+    const Vec3& origin = positions[mesh.triangles[0][0]];
+    for (const auto& [a, b, c] : mesh.triangles) {
+        // Of two triangles with the same corners, all have two.
+        if (corners[a] == 2 && corners[b] == 2 && corners[c] == 2) return false;
+        if (collinear(positions[a], positions[b], positions[c])) return false;
+        const double part = (positions[a] - origin).dot((positions[b] - origin).cross(positions[c] - origin));
+        volume += part;
+        sum += std::abs(part);
+    }
+    constexpr double rounding = 1e-9;
+    return (!shape.closed || volume > rounding * sum) && has_described_edges(mesh);
+}
+
 }  // namespace
 
 RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Context& context) {
     require_usable(mesh, params);
     context.check_cancelled();
-    RepairResult result = Repair(mesh, params, context).run();
-    const MeshTopology after = topology(result.mesh);
+    const MeshTopology before = topology(mesh);
+    const bool is_unchanged = is_sound(mesh, before, params);
+    RepairResult result =
+        is_unchanged ? RepairResult{.mesh = mesh, .was_closed = before.closed} : Repair(mesh, params, context).run();
+    const MeshTopology after = is_unchanged ? before : topology(result.mesh);
     if (after.boundary_loops > 0 && result.was_closed)
         context.doubt(fmt::format(
             "the mesh had no boundary, and has {} now: {} three or more triangles, where parts touch or share a wall, "

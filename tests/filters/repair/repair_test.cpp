@@ -77,6 +77,24 @@ TEST(Repair, OfAGoodMesh_ChangesNothing) {
     }
 }
 
+TEST(Repair, OfAnOrientedManifold_CopiesNothing_UnlessItDescribesOtherEdges) {
+    TriangleMesh mesh = cube();
+    const auto& [a, b, c] = mesh.triangles[0];
+    mesh.sharp_edges = Array<Edge>{make_edge(a, b)};
+    EXPECT_EQ(repaired(mesh).mesh.triangles.data(), mesh.triangles.data());
+    const auto is_edge = [&](const Edge& edge) {
+        return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
+            return std::ranges::count(t, edge[0]) + std::ranges::count(t, edge[1]) == 2;
+        });
+    };
+    Array<Edge> sharp;
+    for (u32 v = 1; v < 8; ++v) sharp.push_back({0, v});
+    mesh.sharp_edges = sharp;
+    const Repaired result = repaired(mesh);
+    EXPECT_EQ(result.mesh.sharp_edges.size(), static_cast<std::size_t>(std::ranges::count_if(sharp, is_edge)));
+    EXPECT_LT(result.mesh.sharp_edges.size(), sharp.size());
+}
+
 TEST(Repair, OfASoup_IsTheClosedMesh) {
     const Repaired result = repaired(separate(cube()));
     EXPECT_EQ(result.stitched, 36u - 8u);
@@ -477,7 +495,7 @@ TEST(Repair, Cancelled_Ends) {
         ContextOptions options;
         options.is_cancelled = [left = after]() mutable { return left-- <= 0; };
         Context context(options);
-        EXPECT_THROW(repair(cube(), {}, context), Cancelled) << after;
+        EXPECT_THROW(repair(separate(cube()), {}, context), Cancelled) << after;
     }
 }
 
