@@ -18,29 +18,9 @@ constexpr double shape_weight = 3;
 
 }  // namespace
 
-double HoleTriangulator::triangle_cost(u32 i, u32 k, u32 j) {
-    const Vec3 &a = corners_[i].position, &b = corners_[k].position, &c = corners_[j].position;
-    const Vec3 ab = b - a, ac = c - a;
-    const Vec3 normal = ab.cross(ac);
-    const double twice_area = normal.norm();
-    if (!(twice_area > 0) || !(normal.dot(up_) >= limits_->normal_cosine * twice_area)) return infinite;
-    const double x = ab.squaredNorm(), y = ac.squaredNorm(), z = (c - b).squaredNorm();
-    const double longer_two = x * y * z / std::min({x, y, z});
-    if (twice_area * twice_area < angle_sine_ * angle_sine_ * longer_two) return infinite;
-    face_ = {};
-    if (!judge_->add_triangle(i, k, j, normal / twice_area, face_)) return infinite;
-    const double share = face_.share_of(limits_->error);
-    constexpr double perfect = 3.4641016151377544;  // 2 √3: an equilateral triangle
-    return share * share + shape_weight * (1 - perfect * twice_area / (x + y + z));
-}
-
 bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Vec3& up, double angle_sine,
-                                   const Limits& limits, HoleErrors& judge) {
-    corners_ = corners;
-    up_ = up;
-    angle_sine_ = angle_sine;
-    limits_ = &limits;
-    judge_ = &judge;
+                                   const Limits& limits, HoleErrors& judge, std::vector<HoleTriangle>& triangles) {
+    const auto index = [&](u32 i, u32 j) { return i * corners.size() + j; };
     edges_.assign(corners.size() * corners.size(), {});
     faces_.resize(edges_.size());
     const auto edge_cost = [&](u32 i, u32 j) {
@@ -49,19 +29,34 @@ bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Ve
         const double share = errors.share_of(limits.error);
         return share * share;
     };
-    const auto cost = [&](u32 i, u32 k, u32 j) { return triangle_cost(i, k, j); };
+    SignedErrors face;  // of the last triangle
+    const auto triangle_cost = [&](u32 i, u32 k, u32 j) {
+        const Vec3 &a = corners[i].position, &b = corners[k].position, &c = corners[j].position;
+        const Vec3 ab = b - a, ac = c - a;
+        const Vec3 normal = ab.cross(ac);
+        const double twice_area = normal.norm();
+        if (!(twice_area > 0) || !(normal.dot(up) >= limits.normal_cosine * twice_area)) return infinite;
+        const double x = ab.squaredNorm(), y = ac.squaredNorm(), z = (c - b).squaredNorm();
+        const double longer_two = x * y * z / std::min({x, y, z});
+        if (twice_area * twice_area < angle_sine * angle_sine * longer_two) return infinite;
+        face = {};
+        if (!judge.add_triangle(i, k, j, normal / twice_area, face)) return infinite;
+        const double share = face.share_of(limits.error);
+        constexpr double perfect = 3.4641016151377544;  // 2 √3: an equilateral triangle
+        return share * share + shape_weight * (1 - perfect * twice_area / (x + y + z));
+    };
     const auto accepts = [&](u32 i, u32, u32 j) {
-        faces_[index(i, j)] = face_;
+        faces_[index(i, j)] = face;
         return true;
     };
-    triangles_.clear();
-    if (!best_.solve(static_cast<u32>(corners.size()), edge_cost, cost, accepts)) return false;
+    triangles.clear();
+    if (!best_.solve(static_cast<u32>(corners.size()), edge_cost, triangle_cost, accepts)) return false;
     auto found = best_.triangles();
     std::ranges::sort(found, {}, [](const auto& t) { return std::pair(t[0], ~t[2]); });  // each before those beyond it
     for (const auto& [i, k, j] : found) {
         SignedErrors errors = faces_[index(i, j)];
         for (const std::size_t edge : {index(i, k), index(k, j), index(i, j)}) errors.add(edges_[edge]);
-        triangles_.push_back({{i, k, j}, errors});
+        triangles.push_back({{i, k, j}, errors});
     }
     return true;
 }

@@ -40,23 +40,11 @@ public:
     /// triangle faces `up` within the limits and has no angle with a sine below `angle_sine`. Cost: O(n³) for n
     /// corners.
     bool triangulate(std::span<const HoleCorner> corners, const Vec3& up, double angle_sine, const Limits& limits,
-                     HoleErrors& judge);
-
-    const std::vector<HoleTriangle>& triangles() const { return triangles_; }
+                     HoleErrors& judge, std::vector<HoleTriangle>& triangles);
 
 private:
-    double triangle_cost(u32 i, u32 k, u32 j);
-    std::size_t index(u32 i, u32 j) const { return i * corners_.size() + j; }
-
-    std::span<const HoleCorner> corners_;
-    Vec3 up_;
-    double angle_sine_ = 0;
-    const Limits* limits_ = nullptr;
-    HoleErrors* judge_ = nullptr;
     HoleTriangulation best_;
-    SignedErrors face_;  ///< of the last triangle
     std::vector<SignedErrors> edges_, faces_;  ///< by edge: its own errors, and those of the triangle beyond it
-    std::vector<HoleTriangle> triangles_;
 };
 
 }  // namespace scanmill::decimating

@@ -134,8 +134,7 @@ bool Planner::triangulate(const Side& side, const Vec3* removed, Edit& edit) {
     else
         accumulated_.begin(side.corners, side.up, side.old_errors, side.old_edges, side.ring_triangles, removed, line_);
     HoleErrors& judge = is_direct ? static_cast<HoleErrors&>(direct_) : accumulated_;
-    if (!triangulator_.triangulate(side.corners, side.up, side.angle_sine, limits_, judge)) return false;
-    triangles_ = triangulator_.triangles();
+    if (!triangulator_.triangulate(side.corners, side.up, side.angle_sine, limits_, judge, triangles_)) return false;
     if (is_direct) {
         if (!direct_.assign(triangles_, static_cast<u32>(edit.triangles.size()), edit.owners)) return false;
         edit.points.insert(edit.points.end(), side.points.begin(), side.points.end());

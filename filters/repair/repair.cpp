@@ -494,21 +494,13 @@ void require_usable(const TriangleMesh& mesh, const RepairParams& params) {
     require_finite(mesh.positions.span(), "vertices");
 }
 
-/// Whether the edges that columns and sharp edges describe are edges of triangles, each once.
-bool has_described_edges(const TriangleMesh& mesh) {
-    for (const Buffer<Edge>& described : {mesh.edges, mesh.sharp_edges}) {
-        std::vector<Edge> missing(described.begin(), described.end());
-        std::ranges::sort(missing);
-        if (std::ranges::adjacent_find(missing) != missing.end()) return false;
-        std::vector<bool> found(missing.size(), false);
-        for (u32 h = 0; !missing.empty() && h < 3 * mesh.triangles.size(); ++h) {
-            const Edge edge = make_edge(half_edges::start(mesh, h), half_edges::end(mesh, h));
-            const auto at = std::ranges::lower_bound(missing, edge);
-            if (at != missing.end() && *at == edge) found[static_cast<std::size_t>(at - missing.begin())] = true;
-        }
-        if (std::ranges::find(found, false) != found.end()) return false;
-    }
-    return true;
+/// Whether they are edges of triangles, each once.
+bool are_edges(std::span<const Edge> edges, const TriangleMesh& mesh) {
+    std::set<Edge> missing(edges.begin(), edges.end());
+    if (missing.size() < edges.size()) return false;
+    for (u32 h = 0; !missing.empty() && h < 3 * mesh.triangles.size(); ++h)
+        missing.erase(make_edge(half_edges::start(mesh, h), half_edges::end(mesh, h)));
+    return missing.empty();
 }
 
 /// Whether nothing is to be done; false also in rare cases where a closer look would find that.
@@ -534,7 +526,8 @@ bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairP
         sum += std::abs(part);
     }
     constexpr double rounding = 1e-9;
-    return (!shape.closed || volume > rounding * sum) && has_described_edges(mesh);
+    return (!shape.closed || volume > rounding * sum) && are_edges(mesh.edges.span(), mesh) &&
+           are_edges(mesh.sharp_edges.span(), mesh);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 
 #include "alpha_solid/components.hpp"
@@ -66,37 +65,30 @@ TEST(VertexStars, PartsOfRandomCellSets_AreFaceConnected_AndNamedByTheirLowestCe
     Array<u8> labels(tets.cells.size());
     for (u8& label : labels) label = random.uniform() < 0.5;
     VertexStars stars(tets);
-    const u32 beyond = VertexStars::none;
     for (u32 vertex = 0; vertex < tets.positions.size(); ++vertex) {
-        std::map<u32, u32> expected;  // by cell at the vertex, and `beyond`
-        for (u32 cell = 0; cell < tets.cells.size(); ++cell)
-            if (std::ranges::find(tets.cells[cell], vertex) != tets.cells[cell].end()) expected[cell] = cell;
-        std::vector<u32> cells;
-        for (const auto& [cell, part] : expected) cells.push_back(cell);
-        bool at_hull = false;
-        for (bool changes = true; changes;) {
-            changes = false;
-            for (const u32 cell : cells)
-                for (std::size_t i = 0; i < 4; ++i) {
-                    const u32 across = tets.neighbours[cell][i];
-                    if (tets.cells[cell][i] == vertex) continue;
-                    at_hull = at_hull || across == beyond;
-                    u32 part = expected[cell];
-                    if (across == beyond && labels[cell] == 0) part = beyond;
-                    if (across != beyond && labels[across] == labels[cell])
-                        part = part == beyond || expected[across] == beyond ? beyond : std::min(part, expected[across]);
-                    changes = changes || part != expected[cell];
-                    expected[cell] = part;
-                }
-        }
+        DisjointSets sets(tets.cells.size() + 1);  // the last: the outside of the hull
+        const u32 beyond = static_cast<u32>(tets.cells.size());
         std::array<std::set<u32>, 2> parts;
-        if (at_hull) parts[0].insert(beyond);
-        for (const u32 cell : cells) parts[labels[cell]].insert(expected[cell]);
+        std::vector<u32> cells;
+        for (u32 cell = 0; cell < beyond; ++cell) {
+            const auto corner = std::ranges::find(tets.cells[cell], vertex) - tets.cells[cell].begin();
+            if (corner < 4) cells.push_back(cell);
+            for (int i = 0; corner < 4 && i < 4; ++i) {
+                const u32 across = tets.neighbours[cell][i];
+                if (i == corner) continue;
+                if (across == VertexStars::none) parts[0].insert(beyond);
+                if (across == VertexStars::none ? labels[cell] == 0 : labels[across] == labels[cell])
+                    sets.unite(cell, std::min(across, beyond));
+            }
+        }
+        const auto part = [&](u32 cell) { return sets.find(cell) == sets.find(beyond) ? beyond : sets.find(cell); };
+        for (const u32 cell : cells) parts[labels[cell]].insert(part(cell));
         std::size_t surplus = 0;
         for (const std::set<u32>& of : parts) surplus += of.empty() ? 0 : of.size() - 1;
         EXPECT_EQ(stars.surplus_parts(vertex, labels), surplus) << vertex;
         ASSERT_EQ(stars.cells().size(), cells.size());
-        for (u32 i = 0; i < cells.size(); ++i) EXPECT_EQ(stars.part(i), expected.at(stars.cells()[i])) << vertex;
+        for (u32 i = 0; i < cells.size(); ++i)
+            EXPECT_EQ(std::min(stars.part(i), beyond), part(stars.cells()[i])) << vertex;
     }
 }
 
