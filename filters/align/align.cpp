@@ -14,7 +14,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/direction.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
 
 namespace scanmill {
 
@@ -323,15 +323,7 @@ Vec3 first_corner_of(const AlignParams& params) {
             .hint(
                 "give `first-corner`, a rough position in the source of the corner that belongs to the first target "
                 "point");
-    if (params.first_corner->size() != 3)
-        throw Error("`first-corner` has {}; it needs 3", count_text(params.first_corner->size(), "length", "lengths"))
-            .hint("give x, y, z");
-    Vec3 position;
-    for (int axis = 0; axis < 3; ++axis)
-        position[axis] = (*params.first_corner)[static_cast<std::size_t>(axis)].value();
-    if (!position.allFinite())
-        throw Error("a length of `first-corner` is not finite").hint("give x, y, z as finite lengths");
-    return position;
+    return position_of(*params.first_corner, "`first-corner`");
 }
 
 /// The index in `order` of the corner near `position`, which is relative to the same point as the corners.

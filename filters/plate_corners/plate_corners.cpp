@@ -11,9 +11,10 @@
 #include "plate_corners/rectangle.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/direction.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -54,7 +55,7 @@ std::optional<Plane> sampled_plane(std::span<const Vec3> positions, std::span<co
         if (trial % 1000 == 0) context.check_cancelled();
         const Vec3 &a = sample[random.index(sample.size())], &b = sample[random.index(sample.size())],
                    &c = sample[random.index(sample.size())];
-        const Vec3 normal = (b - a).cross(c - a);
+        const Vec3 normal = area_vector(a, b, c);
         const double length = normal.norm();
         if (!(length > 0)) continue;
         const Plane plane{a, normal / length};
@@ -107,9 +108,7 @@ struct Axes {
     Vec3 origin, x, y;
 
     explicit Axes(const Plane& plane) : origin(plane.point) {
-        Eigen::Index axis = 0;
-        plane.normal.cwiseAbs().minCoeff(&axis);
-        x = plane.normal.cross(Vec3::Unit(axis)).normalized();
+        x = perpendicular(plane.normal);
         y = plane.normal.cross(x);
     }
     Vec2 flat(const Vec3& p) const { return {x.dot(p - origin), y.dot(p - origin)}; }

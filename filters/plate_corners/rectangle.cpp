@@ -8,13 +8,13 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <unordered_map>
 #include <variant>
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
+#include "scanmill/geometry/spatial/cell_grid.hpp"
 
 namespace scanmill::plate {
 
@@ -265,26 +265,17 @@ double extent_of(std::span<const Vec2> points) {
 }
 
 std::vector<Vec2> without_strays(std::span<const Vec2> points, double cell) {
-    std::unordered_map<u64, u32> number_of;
-    std::vector<std::array<std::int32_t, 2>> cells;
+    CellGrid grid(Vec3::Zero(), cell);
+    std::vector<Vec3> cells;  // the first point in each
     std::vector<u32> cell_of;
-    const auto key = [](std::int32_t x, std::int32_t y) {
-        return static_cast<u64>(static_cast<u32>(x)) << 32 | static_cast<u32>(y);
-    };
     for (const Vec2& p : points) {
-        const auto x = static_cast<std::int32_t>(std::floor(p.x() / cell)),
-                   y = static_cast<std::int32_t>(std::floor(p.y() / cell));
-        const auto [found, is_new] = number_of.emplace(key(x, y), static_cast<u32>(cells.size()));
-        if (is_new) cells.push_back({x, y});
-        cell_of.push_back(found->second);
+        const Vec3 point(p.x(), p.y(), 0);
+        cell_of.push_back(grid.enter(point));
+        if (cell_of.back() == cells.size()) cells.push_back(point);
     }
-    DisjointSets sets(static_cast<u32>(cells.size()));
+    DisjointSets sets(cells.size());
     for (u32 i = 0; i < cells.size(); ++i)
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy)
-                if (const auto other = number_of.find(key(cells[i][0] + dx, cells[i][1] + dy));
-                    other != number_of.end())
-                    sets.unite(i, other->second);
+        grid.any_near(cells[i], [&](u32 other) { return sets.unite(i, other), false; });
     std::vector<std::size_t> size(cells.size());
     for (const u32 each : cell_of) ++size[sets.find(each)];
     std::vector<Vec2> kept;

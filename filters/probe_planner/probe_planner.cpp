@@ -17,8 +17,10 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/direction.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -102,39 +104,17 @@ Settings settings_of(const ProbePlannerParams& params) {
 
 /// The mesh relative to the origin of the features.
 TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
-    try {
-        require_consistent(mesh);
-    } catch (Error& error) {
-        if (error.hint().empty()) error.set_hint("the mesh is damaged: make it again");
-        throw;
-    }
-    if (mesh.triangles.empty())
-        throw Error("the mesh has no triangles: collisions cannot be checked").hint("wire the mesh of the features");
+    require_triangles(mesh, "collisions need at least 1");
     TriangleMesh moved;
     moved.triangles = mesh.triangles;
-    const Vec3 shift = mesh.frame.origin - frame.origin;
-    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
-    for (std::size_t vertex = 0; vertex < positions.size(); ++vertex)
-        if (!positions[vertex].allFinite())
-            throw Error("vertex {} of the mesh is not finite", vertex)
-                .hint("remove such vertices and the triangles at them");
-    for (Vec3& position : positions) position += shift;
-    moved.positions = std::move(positions);
+    moved.positions = translated(mesh.positions, mesh.frame.origin - frame.origin);
     return moved;
 }
 
-/// Throws Error if the mesh is closed and encloses a negative volume. `part` has the positions of `mesh` beside the
-/// features.
-void require_outward(const TriangleMesh& part, const TriangleMesh& mesh) {
-    double volume = 0;
-    BoundingBox box;
-    const Vec3& origin = part.positions[part.triangles[0][0]];
-    for (const auto& [a, b, c] : part.triangles) {
-        const Vec3 u = part.positions[a] - origin, v = part.positions[b] - origin, w = part.positions[c] - origin;
-        volume += u.dot(v.cross(w)) / 6;
-        for (const Vec3& corner : {u, v, w}) box.add(corner);
-    }
-    if (volume >= -rounding * std::pow(box.diagonal(), 3) || !topology(mesh).closed) return;
+/// Throws Error if the mesh is closed and encloses a negative volume.
+void require_outward(const TriangleMesh& mesh) {
+    const double volume = signed_volume(mesh.positions, mesh.triangles);
+    if (volume >= -rounding * std::pow(surface_box(mesh).diagonal(), 3) || !topology(mesh).closed) return;
     throw Error("the mesh is inside out: it encloses {:.4g} {}3, so that every convex edge is concave", volume,
                 symbol(mesh.frame.unit))
         .hint("`repair` turns a closed mesh outwards; find the features on its result");
@@ -372,7 +352,7 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
     const Settings settings = settings_of(params);
     require_same_frame(features.frame, "the features are", mesh.frame, "the mesh");
     const TriangleMesh part = mesh_beside(mesh, features.frame);
-    require_outward(part, mesh);
+    require_outward(mesh);
     const Machine machine(part, settings.probe, context.threads());
     const ReferencePoints references = find_reference_points(features, settings.lines, settings.spacing, machine.mesh(),
                                                              settings.error, settings.probe.radius, context);

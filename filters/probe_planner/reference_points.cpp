@@ -13,6 +13,7 @@
 #include "probe_planner/pairs.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::probing {
@@ -277,13 +278,6 @@ void add_roughness(const Line& line, std::vector<double>& distances) {
     }
 }
 
-double quantile(std::vector<double> numbers, double share) {
-    if (numbers.empty()) return 0;
-    const auto at = static_cast<std::size_t>(std::ceil(share * static_cast<double>(numbers.size()))) - 1;
-    std::ranges::nth_element(numbers, numbers.begin() + static_cast<std::ptrdiff_t>(at));
-    return numbers[at];
-}
-
 }  // namespace
 
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
@@ -328,7 +322,7 @@ ReferencePoints find_reference_points(const FeatureGraph& features, const LineCh
     }
     fit_to_mesh(result.points, mesh, error, radius, context);
     leave_out_repeated(result, lengths, spacing, error, context);
-    result.edge_roughness = quantile(std::move(distances), 0.95);
+    if (!distances.empty()) result.edge_roughness = quantile(distances, 0.95);
     return result;
 }
 

@@ -10,18 +10,22 @@ namespace scanmill {
 
 namespace {
 
+constexpr const char* way_out = "the mesh is damaged: make it again";
+
 void require_rows(const ColumnTable& columns, std::size_t rows, std::string_view element) {
     for (const Column& column : columns)
         if (column.rows() != rows)
             throw Error("column '{}' has {} for {} {}", column.name(), count_text(column.rows(), "row", "rows"), rows,
-                        element);
+                        element)
+                .hint(way_out);
 }
 
 template <class Simplex>
 void require_in_range(const Buffer<Simplex>& simplices, std::size_t vertices, std::string_view what) {
     for (std::size_t i = 0; i < simplices.size(); ++i)
         for (u32 vertex : simplices[i])
-            if (vertex >= vertices) throw Error("{} {} names vertex {}; there are {}", what, i, vertex, vertices);
+            if (vertex >= vertices)
+                throw Error("{} {} names vertex {}; there are {}", what, i, vertex, vertices).hint(way_out);
 }
 
 constexpr u32 removed = ~u32(0);

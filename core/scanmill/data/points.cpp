@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/points.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 
 #include <algorithm>
@@ -56,9 +57,7 @@ Vec3 median_of(std::span<const Vec3> positions) {
         coordinates.clear();
         for (const Vec3& p : positions)
             if (p.allFinite()) coordinates.push_back(p[axis]);
-        const auto middle = coordinates.begin() + static_cast<std::ptrdiff_t>((coordinates.size() - 1) / 2);
-        std::nth_element(coordinates.begin(), middle, coordinates.end());
-        median[axis] = *middle;
+        median[axis] = quantile(coordinates, 0.5);
     }
     return median;
 }
@@ -144,6 +143,7 @@ Cleaned<PointCloud> accepted(const PointCloud& cloud, InvalidRows rule, bool nan
 }
 
 Buffer<Vec3> translated(const Buffer<Vec3>& positions, const Vec3& shift) {
+    if (shift.isZero(0)) return positions;
     Array<Vec3> moved(positions.size());
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = positions[i] + shift;
     return moved;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/data/point_tree.hpp"
 
 namespace scanmill {
@@ -18,13 +19,6 @@ namespace {
 constexpr std::size_t most_queries = 100'000;
 
 double length(const Vec3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Both zeros have one hash.
 std::uint64_t hash_of(const Vec3& p) {
@@ -90,7 +84,7 @@ double edge_spacing(const TriangleMesh& mesh) {
             const Vec3& to = mesh.positions[triangle[corner]];
             if (from.allFinite() && to.allFinite()) lengths.push_back(length(to - from));
         }
-    return median(lengths);
+    return lengths.empty() ? 0 : median(lengths);
 }
 
 }  // namespace scanmill

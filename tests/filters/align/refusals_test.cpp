@@ -158,7 +158,8 @@ TEST(AlignRefusals, FirstCornerFarFromAllCorners_OrBetweenTwo) {
         refusal(cloud(plate()), cloud(plate()), in_rectangle({-100, 0, 0})).sentence(),
         "`first-corner` is 60 u from the nearest corner of the source; less than 60 u, half of the shortest side, "
         "is needed");
-    EXPECT_THAT(refusal(cloud(plate()), cloud(plate()), in_rectangle({nan, 0, 0})).sentence(), HasSubstr("not finite"));
+    EXPECT_THAT(refusal(cloud(plate()), cloud(plate()), in_rectangle({nan, 0, 0})).sentence(),
+                HasSubstr("a length of `first-corner` is nan u"));
     AlignParams two = in_rectangle({0, 0, 0});
     two.first_corner->pop_back();
     EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), two).sentence(), "`first-corner` has 2 lengths; it needs 3");

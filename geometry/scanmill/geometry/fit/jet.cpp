@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -22,8 +23,7 @@ Jet fit_jet(std::span<const Vec3> offsets, std::span<const double> weights) {
     Jet jet{normal, scatter.centroid.dot(normal) * normal, false};
     const auto count = static_cast<Eigen::Index>(offsets.size());
     if (count < coefficients) return jet;
-    const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    const Vec3 v = normal.cross(u);
+    const auto [u, v] = directions_across(normal);
     double size = 0;
     for (const Vec3& offset : offsets) size += offset.squaredNorm();
     size = std::sqrt(size / static_cast<double>(offsets.size()));

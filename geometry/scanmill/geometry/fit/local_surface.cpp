@@ -7,6 +7,7 @@
 
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/fit/quadric.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -16,12 +17,6 @@ constexpr std::size_t fewest_samples = 6;
 constexpr double most_deviations = 3;
 /// Of the squared width over the squared length: a neighbourhood narrower than about 1/30 shows a curve, not a surface.
 constexpr double least_flatness = 1e-3;
-
-/// Two unit vectors, perpendicular to a unit normal and to each other.
-std::pair<Vec3, Vec3> directions_across(const Vec3& normal) {
-    const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    return {u, normal.cross(u)};
-}
 
 /// Expresses the offsets from the point `origin` in the frame of the plane.
 void take_samples(std::span<const Vec3> offsets, std::size_t origin, const Vec3& normal,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/growing/distinct_points.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,10 +14,6 @@
 namespace scanmill::growing {
 
 namespace {
-
-bool comes_before(const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
 
 /// spatial_order() orders points of one cell of the curve by row; this orders them by position.
 void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box, Array<u32>& order) {
@@ -37,7 +34,7 @@ void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box,
         if (end - begin > 1)
             std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
                       order.begin() + static_cast<std::ptrdiff_t>(end), [&](u32 a, u32 b) {
-                          return positions[a] != positions[b] ? comes_before(positions[a], positions[b]) : a < b;
+                          return positions[a] != positions[b] ? is_lower(positions[a], positions[b]) : a < b;
                       });
         begin = end;
     }

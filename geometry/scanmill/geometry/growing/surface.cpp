@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::growing {
 
@@ -85,9 +86,7 @@ u32 Surface::next_on_boundary(u32 vertex) const {
     return next;
 }
 
-Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
-    return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
-}
+Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const { return area_vector(positions, {a, b, c}).normalized(); }
 
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
@@ -131,7 +130,7 @@ bool has_angles_of(const Surface& surface, const Triangle& triangle, double leas
     const auto& [from, point, to] = triangle;
     const double a = (p[point] - p[to]).norm(), b = (p[point] - p[from]).norm(), c = (p[to] - p[from]).norm();
     // The smallest angle is opposite the shortest side. Its sine is that side over the diameter of the circumcircle.
-    const double twice_area = (p[point] - p[from]).cross(p[to] - p[from]).norm();
+    const double twice_area = area_vector(p, triangle).norm();
     return std::min({a, b, c}) * twice_area >= least_sine * a * b * c;
 }
 

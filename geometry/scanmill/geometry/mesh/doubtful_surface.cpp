@@ -10,6 +10,7 @@
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -24,19 +25,13 @@ constexpr double doubtful_rough = 0.15;
 constexpr std::size_t few_edges = 10'000;
 constexpr double doubtful_turn = 5;  // degrees
 
-/// Twice the area as its length.
-Vec3 area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
-    const Vec3& a = mesh.positions[triangle[0]];
-    return (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
-}
-
 }  // namespace
 
 double spanned_share(const TriangleMesh& mesh, double edges) {
     const double limit = edges * edge_spacing(mesh);
     double spanned = 0, whole = 0;
     for (const Triangle& triangle : mesh.triangles) {
-        const double area = area_normal(mesh, triangle).norm();
+        const double area = area_vector(mesh.positions, triangle).norm();
         double longest = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 edge = mesh.positions[triangle[(i + 1) % 3]] - mesh.positions[triangle[i]];
@@ -54,8 +49,8 @@ double rough_share(const TriangleMesh& mesh) {
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
         const u32 other = opposite[half_edge];
         if (other >= opposite.size() || other < half_edge) continue;  // counted once; a boundary has no opposite
-        const Vec3 one = area_normal(mesh, mesh.triangles[half_edge / 3]);
-        const Vec3 two = area_normal(mesh, mesh.triangles[other / 3]);
+        const Vec3 one = area_vector(mesh.positions, mesh.triangles[half_edge / 3]);
+        const Vec3 two = area_vector(mesh.positions, mesh.triangles[other / 3]);
         ++edges;
         rough += one.dot(two) < cosine_of_rough * one.norm() * two.norm();
     }

@@ -6,6 +6,7 @@
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -13,16 +14,12 @@ namespace {
 
 constexpr double thinnest = 1e-9;
 
-bool lower(const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
 /// Zero when the triangle has no area.
 Vec3 normal_of(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<const Vec3*, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = &mesh.positions[triangle[i]];
     // Starts at the lowest corner: rounding must not depend on the triangle's first corner.
-    const auto lowest = std::ranges::min_element(p, [](const Vec3* a, const Vec3* b) { return lower(*a, *b); });
+    const auto lowest = std::ranges::min_element(p, is_lower, [](const Vec3* v) -> const Vec3& { return *v; });
     std::ranges::rotate(p, lowest);
     Vec3 u = *p[1] - *p[0], v = *p[2] - *p[0], w = *p[2] - *p[1];
     const double size = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
@@ -47,7 +44,7 @@ Vec3 neighbours_normal(const TriangleMesh& mesh, std::span<const u32> opposite, 
         const Vec3 edge =
             mesh.positions[half_edges::end(mesh, half_edge)] - mesh.positions[half_edges::start(mesh, half_edge)];
         const double length = edge.squaredNorm();
-        if (length > longest || (length == longest && lower(normal, best))) {
+        if (length > longest || (length == longest && is_lower(normal, best))) {
             longest = length;
             best = normal;
         }
@@ -93,6 +90,15 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposi
     result.without_area = thin.size();
     fill(mesh, opposite, result.unit, std::move(thin));
     return result;
+}
+
+Array<Vec3> vertex_area_vectors(const TriangleMesh& mesh) {
+    Array<Vec3> areas(mesh.positions.size(), Vec3(Vec3::Zero()));
+    for (const Triangle& triangle : mesh.triangles) {
+        const Vec3 area = area_vector(mesh.positions, triangle);
+        for (const u32 vertex : triangle) areas[vertex] += area;
+    }
+    return areas;
 }
 
 }  // namespace scanmill

@@ -29,4 +29,7 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposi
 /// rounding in the facets of a regular prism.
 inline constexpr double angle_tie = 1e-9;
 
+/// For each vertex the sum of area_vector() over its triangles.
+Array<Vec3> vertex_area_vectors(const TriangleMesh& mesh);
+
 }  // namespace scanmill

@@ -17,6 +17,7 @@
 #include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "scanmill/geometry/spatial/lists.hpp"
 
 namespace scanmill {
 
@@ -60,7 +61,7 @@ public:
         for (const bool at_corners : {true, false})  // then closed creases without corners, from their lowest vertex
             for (u32 number = 0; number < vertices_.size(); ++number) {
                 if (is_corner_[number] != at_corners) continue;
-                for (const Crease& crease : creases_at(number))
+                for (const Crease& crease : creases_[number])
                     if (!visited[crease.half_edge]) lines.push_back(crease_from(crease, visited));
             }
         std::ranges::sort(lines, {}, [&](const FeatureLine& line) {
@@ -94,21 +95,12 @@ private:
 
     /// Every sharp edge is in the list of both its vertices, each time with the half-edge that starts there.
     void find_creases(const std::vector<bool>& sharp) {
-        begin_.assign(vertices_.size() + 1, 0);
-        for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
-            if (sharp[half_edge]) ++begin_[number_at_start(half_edge)];
-        std::exclusive_scan(begin_.begin(), begin_.end(), begin_.begin(), u32(0));
-        creases_.resize(begin_.back());
-        Array<u32> next(begin_.begin(), begin_.end() - 1);
-        for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
-            if (sharp[half_edge]) creases_[next[number_at_start(half_edge)]++] = {number_at_end(half_edge), half_edge};
+        creases_ = Lists<Crease>(vertices_.size(), [&](auto&& add) {
+            for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
+                if (sharp[half_edge]) add(number_at_start(half_edge), {number_at_end(half_edge), half_edge});
+        });
         for (std::size_t number = 0; number < vertices_.size(); ++number)
-            std::sort(creases_.begin() + begin_[number], creases_.begin() + begin_[number + 1],
-                      [](const Crease& a, const Crease& b) { return a.end < b.end; });
-    }
-
-    std::span<const Crease> creases_at(u32 number) const {
-        return std::span(creases_).subspan(begin_[number], begin_[number + 1] - begin_[number]);
+            std::ranges::sort(creases_[number], {}, &Crease::end);
     }
 
     const Vec3& position(u32 number) const { return mesh_.positions[vertices_[number]]; }
@@ -119,7 +111,7 @@ private:
     void walk(u32 from, Crease crease, double reach, Visit&& visit) const {
         while (crease.end != from) {
             visit(crease.end);
-            const std::span<const Crease> two = creases_at(crease.end);
+            const std::span<const Crease> two = creases_[crease.end];
             if (two.size() != 2 || !((position(crease.end) - position(from)).norm() < reach)) return;
             crease = two[0].half_edge == opposite_[crease.half_edge] ? two[1] : two[0];
         }
@@ -142,7 +134,7 @@ private:
         is_corner_.assign(vertices_.size(), false);
         Array<double> angles(vertices_.size(), 0.0);  // between the two creases of vertices inside of lines
         for (u32 number = 0; number < vertices_.size(); ++number) {
-            const std::span<const Crease> creases = creases_at(number);
+            const std::span<const Crease> creases = creases_[number];
             is_corner_[number] = creases.size() + boundary_edges[number] != 2;
             if (is_corner_[number] || creases.size() != 2) continue;
             const Vec3& here = position(number);
@@ -156,7 +148,7 @@ private:
         for (u32 number = 0; number < vertices_.size(); ++number) {
             if (!(angles[number] > corner_angle)) continue;
             bool is_largest = true;  // of equal angles that of the lower number
-            for (const Crease& crease : creases_at(number))
+            for (const Crease& crease : creases_[number])
                 walk(number, crease, reach, [&](u32 other) {
                     const bool is_near = (position(other) - position(number)).norm() < reach;
                     if (is_near && std::pair(-angles[other], other) < std::pair(-angles[number], number))
@@ -190,7 +182,7 @@ private:
             line.half_edges.push_back(crease.half_edge);
             line.closed = crease.end == begin;
             if (line.closed || is_corner_[crease.end]) return line;
-            const std::span<const Crease> two = creases_at(crease.end);
+            const std::span<const Crease> two = creases_[crease.end];
             crease = two[0].half_edge == opposite_[crease.half_edge] ? two[1] : two[0];
         }
     }
@@ -199,8 +191,7 @@ private:
     std::span<const u32> opposite_;
     Array<u32> vertices_;
     Array<u32> number_;  // by vertex of the mesh
-    Array<u32> begin_;  // by number, and one more: into creases_
-    Array<Crease> creases_;  // by number of the vertex where they start, then of the vertex where they end
+    Lists<Crease> creases_;  // by number of the vertex where they start, then of the vertex where they end
     std::vector<Array<u32>> loops_;
     std::vector<bool> is_corner_;
 };

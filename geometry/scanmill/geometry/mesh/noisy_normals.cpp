@@ -19,6 +19,9 @@
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/spatial/lists.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -26,32 +29,8 @@ namespace {
 
 using Matrix = Eigen::Matrix3d;
 
-bool lower(const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-/// Lists of indices, one after another.
-class Lists {
-public:
-    /// `each` calls its argument with every number of a list and element, twice in the same order.
-    template <class Each>
-    Lists(std::size_t count, const Each& each) : begin_(count + 1, 0) {
-        each([&](u32 list, u32) { ++begin_[list + 1]; });
-        std::inclusive_scan(begin_.begin(), begin_.end(), begin_.begin());
-        elements_.resize(begin_.back());
-        Array<u32> next(begin_.begin(), begin_.end() - 1);
-        each([&](u32 list, u32 element) { elements_[next[list]++] = element; });
-    }
-    std::span<const u32> operator[](u32 list) const {
-        return std::span(elements_).subspan(begin_[list], begin_[list + 1] - begin_[list]);
-    }
-
-private:
-    Array<u32> begin_, elements_;
-};
-
-/// Of every vertex: the vertices at the other ends of its edges.
-Lists neighbours_of(const TriangleMesh& mesh, std::span<const u32> opposite) {
+/// For each vertex the vertices at the other ends of its edges.
+Lists<> neighbours_of(const TriangleMesh& mesh, std::span<const u32> opposite) {
     return {mesh.positions.size(), [&](auto&& add) {
                 for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
                     if (opposite[half_edge] == half_edges::no_half_edge) continue;
@@ -62,7 +41,7 @@ Lists neighbours_of(const TriangleMesh& mesh, std::span<const u32> opposite) {
             }};
 }
 
-Lists triangles_of(const TriangleMesh& mesh) {
+Lists<> triangles_of(const TriangleMesh& mesh) {
     return {mesh.positions.size(), [&](auto&& add) {
                 for (u32 t = 0; t < mesh.triangles.size(); ++t)
                     for (const u32 vertex : mesh.triangles[t]) add(vertex, t);
@@ -82,14 +61,14 @@ struct FromQuadrics {
 std::optional<double> distance_from_quadric(std::vector<Vec3> offsets) {
     constexpr std::size_t coefficients = 6;
     if (offsets.size() <= coefficients) return std::nullopt;
-    std::sort(offsets.begin() + 1, offsets.end(), lower);
+    std::sort(offsets.begin() + 1, offsets.end(), is_lower);
     const Jet jet = fit_jet(offsets);
     if (!jet.is_curved) return std::nullopt;
     return jet.offset.norm() / std::sqrt(1 - 4 / static_cast<double>(offsets.size()));
 }
 
 /// Unknown unless every ring of neighbours has more vertices than the one before: else the surface ends or closes.
-FromQuadrics distances_from_quadrics(const TriangleMesh& mesh, const Lists& neighbours, u32 vertex) {
+FromQuadrics distances_from_quadrics(const TriangleMesh& mesh, const Lists<>& neighbours, u32 vertex) {
     std::vector<u32> ring{vertex}, inner;  // sorted
     std::vector<Vec3> offsets{Vec3::Zero()};
     FromQuadrics result;
@@ -188,7 +167,7 @@ struct Neighbourhoods {
 
 class Grower {
 public:
-    Grower(const TriangleMesh& mesh, const Lists& neighbours, std::span<const Vec3> areas, const Limits& limits)
+    Grower(const TriangleMesh& mesh, const Lists<>& neighbours, std::span<const Vec3> areas, const Limits& limits)
         : mesh_(mesh),
           neighbours_(neighbours),
           areas_(areas),
@@ -240,7 +219,7 @@ private:
                 (std::max(0.0, least - (n - 3) * limits_.variance) + limits_.variance) / middle};
     }
     static bool after(const Waiting& a, const Waiting& b) {
-        return a.distance != b.distance ? a.distance > b.distance : lower(b.offset, a.offset);
+        return a.distance != b.distance ? a.distance > b.distance : is_lower(b.offset, a.offset);
     }
     void reach(u32 vertex, u32 centre) {
         reached_[vertex] = round_;
@@ -250,7 +229,7 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    const Lists& neighbours_;
+    const Lists<>& neighbours_;
     std::span<const Vec3> areas_;
     const Limits& limits_;
     std::vector<u32> reached_;  ///< by vertex: the last round
@@ -290,7 +269,7 @@ Matrix scatter_of(const TriangleMesh& mesh, const Triangle& triangle) {
 }
 
 /// The vertices of the triangles, and those up to two edges away.
-std::vector<u32> near_vertices(const TriangleMesh& mesh, const Lists& neighbours, std::span<const u32> triangles) {
+std::vector<u32> near_vertices(const TriangleMesh& mesh, const Lists<>& neighbours, std::span<const u32> triangles) {
     std::vector<u32> found;
     std::vector<bool> is_found(mesh.positions.size(), false);
     const auto add = [&](u32 vertex) {
@@ -305,20 +284,10 @@ std::vector<u32> near_vertices(const TriangleMesh& mesh, const Lists& neighbours
     return found;
 }
 
-/// Of every vertex: the sum over its triangles of the normals times twice the areas.
-Array<Vec3> area_vectors(const TriangleMesh& mesh) {
-    Array<Vec3> areas(mesh.positions.size(), Vec3(Vec3::Zero()));
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3 area = (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
-        for (const u32 vertex : {a, b, c}) areas[vertex] += area;
-    }
-    return areas;
-}
-
 }  // namespace
 
 double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, const Execution& execution) {
-    const Lists neighbours = neighbours_of(mesh, opposite);
+    const Lists<> neighbours = neighbours_of(mesh, opposite);
     const std::size_t count = mesh.positions.size();
     constexpr std::size_t enough = 5'000;
     const std::size_t k = std::max<std::size_t>(1, count / enough);
@@ -378,8 +347,8 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
         const double middle = solver.eigenvalues()[1];
         errors[t] = middle > 0 ? limits.variance / middle : std::numeric_limits<double>::infinity();
     }
-    const Lists neighbours = neighbours_of(mesh, opposite), triangles_at = triangles_of(mesh);
-    const Array<Vec3> areas = area_vectors(mesh);
+    const Lists<> neighbours = neighbours_of(mesh, opposite), triangles_at = triangles_of(mesh);
+    const Array<Vec3> areas = vertex_area_vectors(mesh);
     const std::vector<u32> centres = near_vertices(mesh, neighbours, unreliable);
     constexpr u32 outside = ~u32(0);
     std::vector<u32> rank(mesh.positions.size(), outside);  // by vertex, in the current neighbourhood
@@ -393,8 +362,8 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
                 if (a != vertex || rank[b] == outside || rank[c] == outside) continue;
                 const Plane& plane = found.best[std::max({rank[a], rank[b], rank[c]})];
                 const bool is_better =
-                    plane.error < errors[t] ||
-                    (plane.error == errors[t] && plane.normal != Vec3::Zero() && lower(plane.normal, result.unit[t]));
+                    plane.error < errors[t] || (plane.error == errors[t] && plane.normal != Vec3::Zero() &&
+                                                is_lower(plane.normal, result.unit[t]));
                 if (!is_better) continue;
                 errors[t] = plane.error;
                 result.unit[t] = plane.normal;

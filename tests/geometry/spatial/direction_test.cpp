@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/data/direction.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
 
 #include <gmock/gmock.h>
 
@@ -31,6 +31,18 @@ TEST(DirectionOf, WithoutThreeNumbersOrALength_IsRefused) {
     EXPECT_EQ(refusal({0, 0, 0}), "`up` is (0, 0, 0); it must have a length");
     EXPECT_EQ(refusal({0, std::numeric_limits<double>::quiet_NaN(), 1}), "`up` is (0, nan, 1); it must have a length");
     EXPECT_EQ(refusal({0, 0, std::numeric_limits<double>::infinity()}), "`up` is (0, 0, inf); it must have a length");
+}
+
+TEST(PositionOf, WithoutThreeFiniteLengths_IsRefused) {
+    EXPECT_EQ(position_of(std::vector<Length>{1, -2, 0}, "`centre`"), Vec3(1, -2, 0));
+    const auto refusal = [](std::vector<Length> lengths) {
+        const Error error = error_of([&] { position_of(lengths, "`centre`"); });
+        EXPECT_FALSE(error.hint().empty());
+        return error.sentence();
+    };
+    EXPECT_EQ(refusal({1}), "`centre` has 1 length; it needs 3");
+    EXPECT_EQ(refusal({0, std::numeric_limits<double>::quiet_NaN(), 0}),
+              "a length of `centre` is nan u; it must be finite");
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Medians and quantiles: always one of the values, whatever their number.
+///
+/// Both reorder the values. Pre: at least one value, none is NaN. Cost: linear.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace scanmill {
+
+/// Of an even number of values the upper of the two in the middle.
+template <class Values>
+double median(Values&& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The least value that at least `share` of the values, from 0 to 1, do not exceed.
+template <class Values>
+double quantile(Values&& values, double share) {
+    const double rank = std::max(1.0, std::ceil(share * static_cast<double>(values.size())));
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+}
+
+}  // namespace scanmill
