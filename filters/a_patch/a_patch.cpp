@@ -14,11 +14,13 @@
 #include "a_patch/repair.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/topology.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/patches/a_patch.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -402,9 +404,8 @@ Weights fit_and_measure(Construction& construction, const PointCloud* points, co
         return std::sqrt(squares / count);
     };
     const double to_surface = rms(found.to_surface);
-    std::ranges::sort(found.to_surface);
-    result.fit = {to_surface, found.to_surface[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1],
-                  found.to_surface.back(), rms(found.to_mesh)};
+    result.fit = {to_surface, quantile(found.to_surface, 0.95), *std::ranges::max_element(found.to_surface),
+                  rms(found.to_mesh)};
     return weights;
 }
 
@@ -459,12 +460,8 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
         context.doubt(fmt::format("{} the wrong sign: the surface may have several sheets there",
                                   count_text(result.sign_violations, "weight has", "weights have")));
     if (!counts.closed) return;
-    double volume = 0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3& o = mesh.positions[mesh.triangles[0][0]];
-        volume += (mesh.positions[t[0]] - o).dot((mesh.positions[t[1]] - o).cross(mesh.positions[t[2]] - o));
-    }
-    if (volume < 0) context.doubt("the mesh is inside out: inside and outside are exchanged");
+    if (signed_volume(mesh.positions, mesh.triangles) < 0)
+        context.doubt("the mesh is inside out: inside and outside are exchanged");
 }
 
 void report(const APatchResult& result, Context& context) {

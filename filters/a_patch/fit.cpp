@@ -11,6 +11,7 @@
 #include "a_patch/outliers.hpp"
 #include "a_patch/slope_dependence.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::a_patches {
@@ -152,7 +153,7 @@ public:
             set_slopes();
         }
         reduce_changes();
-        return {std::move(weights_), median_regularisation()};
+        return {std::move(weights_), median(std::vector(regularisation_))};
     }
 
 private:
@@ -291,13 +292,6 @@ private:
                 for (u32 e = 0; e < changes.size(); ++e) move_within_limits(e, changes[e]);
             },
             execution_);
-    }
-
-    double median_regularisation() const {
-        std::vector<double> all = regularisation_;
-        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-        std::ranges::nth_element(all, middle);
-        return *middle;
     }
 
     void add_priors() {

@@ -8,6 +8,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
 
@@ -30,7 +31,7 @@ constexpr double cosine_of_4 = 0.9975640502598242, cosine_of_172 = -0.9902680687
 
 HullFace face_of(const std::array<Vec3, 3>& p) {
     HullFace face;
-    const Vec3 across = (p[1] - p[0]).cross(p[2] - p[0]);
+    const Vec3 across = area_vector(p[0], p[1], p[2]);
     const double twice = across.norm();
     face.normal = across / twice;
     const Vec3 opposite((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());

@@ -13,6 +13,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
 
@@ -96,7 +97,7 @@ private:
         const auto is_near = [&](std::size_t i) {
             const Triangle& t = triangles[nearest.triangles[i]];
             const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-            const double radius = (b - a).cross(c - a).norm() / ((b - a).norm() + (c - b).norm() + (a - c).norm());
+            const double radius = area_vector(a, b, c).norm() / ((b - a).norm() + (c - b).norm() + (a - c).norm());
             return nearest.distances[i] <= radius;
         };
         std::vector<u8> counts(points.size());
@@ -117,7 +118,7 @@ private:
     Point over_triangle(u32 f, const Vec3& point, const Vec3& foot) const {
         const Triangle& t = mesh_.mesh.triangles[f];
         const std::array<Vec3, 3> p{mesh_.mesh.positions[t[0]], mesh_.mesh.positions[t[1]], mesh_.mesh.positions[t[2]]};
-        const Vec3 across = (p[1] - p[0]).cross(p[2] - p[0]);
+        const Vec3 across = area_vector(p[0], p[1], p[2]);
         Point result{f, {}, {}};
         for (std::size_t i = 0; i < 3; ++i)
             result.shares[static_cast<Eigen::Index>(i)] = std::clamp(

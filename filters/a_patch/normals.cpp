@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/half_edges.hpp"
@@ -13,6 +14,7 @@
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/fit/quadric.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
 
@@ -73,12 +75,6 @@ Vec3 most_normal_of_few(std::span<const Vec3> normals) {
 
 }  // namespace
 
-Vec3 perpendicular(const Vec3& n) {
-    Eigen::Index least;
-    n.cwiseAbs().minCoeff(&least);
-    return n.cross(Vec3::Unit(least)).normalized();
-}
-
 Sectors sectors_of(const TriangleMesh& mesh) {
     const Array<u32> opposites = half_edges::opposites(mesh);
     const std::span sharp = mesh.sharp_edges.span();
@@ -86,27 +82,20 @@ Sectors sectors_of(const TriangleMesh& mesh) {
     std::vector<bool> is_at_sharp(mesh.positions.size(), false);
     for (const Edge& edge : sharp)
         for (const u32 v : edge) is_at_sharp[v] = true;
-    std::vector<u32> parent(corners);
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](u32 corner) {
-        while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-        return corner;
-    };
+    DisjointSets sets(corners);
     for (u32 half = 0; half < corners; ++half) {
         const u32 other = opposites[half];
         if (other == half_edges::boundary || other < half) continue;
         const u32 a = half_edges::start(mesh, half), b = half_edges::end(mesh, half);
         if (is_at_sharp[a] && is_at_sharp[b] && std::ranges::binary_search(sharp, make_edge(a, b))) continue;
         for (const auto& [one, second] :
-             {std::pair(half, half_edges::after(other)), std::pair(half_edges::after(half), other)}) {
-            const u32 p = root(one), q = root(second);
-            parent[std::max(p, q)] = std::min(p, q);  // the first corner of a sector is its root
-        }
+             {std::pair(half, half_edges::after(other)), std::pair(half_edges::after(half), other)})
+            sets.unite(one, second);
     }
     Sectors sectors;
     sectors.of_corner.resize(corners / 3);
     for (u32 corner = 0; corner < corners; ++corner) {
-        const u32 first = root(corner);
+        const u32 first = sets.find(corner);
         if (first == corner) {
             sectors.of_corner[corner / 3][corner % 3] = static_cast<u32>(sectors.size());
             sectors.vertex.push_back(half_edges::start(mesh, corner));

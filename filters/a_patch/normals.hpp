@@ -40,9 +40,6 @@ struct GivenNormals {
 /// Of the face column `corner-normals`. Throws Error if it is absent, has another shape, or a number is not finite.
 GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors);
 
-/// A unit vector perpendicular to a unit vector.
-Vec3 perpendicular(const Vec3& n);
-
 /// The unit vector whose least cosine with the normals is greatest. Pre: at least one; unit
 /// length. Cost: about linear.
 Vec3 most_normal(std::span<const Vec3> normals);

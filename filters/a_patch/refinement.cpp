@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
 
@@ -46,9 +47,7 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
     std::vector<Edge> sharp(mesh.sharp_edges.begin(), mesh.sharp_edges.end());
     std::vector<bool> is_cut(cut.size(), false);
     std::size_t bisected = 0;
-    const auto normal_of = [&](u32 i, u32 j, u32 k) -> Vec3 {
-        return (positions[j] - positions[i]).cross(positions[k] - positions[i]).normalized();
-    };
+    const auto normal_of = [&](u32 i, u32 j, u32 k) -> Vec3 { return area_vector(positions, {i, j, k}).normalized(); };
     const auto face_normal = [&](u32 f) { return normal_of(cut[f][0], cut[f][1], cut[f][2]); };
     const auto corner_normal = [&](u32 half) -> const Vec3& { return normals[half / 3][half % 3]; };
     // Whether the last vertex, with this normal, may cut the triangle at this half-edge.

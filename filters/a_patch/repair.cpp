@@ -7,6 +7,7 @@
 
 #include "a_patch/normals.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
 
@@ -73,10 +74,7 @@ SharpSides sharp_sides(const PatchMesh& mesh, std::span<const u32> corners, cons
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh) {
     std::vector<Vec3> normals;
-    for (const Triangle& t : mesh.triangles)
-        normals.push_back((mesh.positions[t[1]] - mesh.positions[t[0]])
-                              .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                              .normalized());
+    for (const Triangle& t : mesh.triangles) normals.push_back(area_vector(mesh.positions, t).normalized());
     return normals;
 }
 

@@ -9,6 +9,7 @@
 
 #include "alpha_solid/selection.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
@@ -115,13 +116,6 @@ constexpr double doubtful_edges = 7;
 
 std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
 
-std::string joined(const std::vector<std::string>& parts) {
-    std::string text;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    return text;
-}
-
 /// Reports that more points are outside than the share allows; empty when not.
 std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidParams& params) {
     const std::size_t points = result.tets.positions.size() - result.hidden_points.size();
@@ -148,7 +142,7 @@ std::string wrong_alpha_text(const AlphaSolidResult& result, const AlphaSolidPar
         faults.push_back(fmt::format("it has {} components", result.components));
     const double alpha = result.alpha, least = result.nearest_valid->least;
     return fmt::format("at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
-                       params.alpha->text(), joined(faults), text_within(*result.nearest_valid, alpha), unit,
+                       params.alpha->text(), enumerated(faults), text_within(*result.nearest_valid, alpha), unit,
                        least > max_scan * result.alpha_cover && least > alpha
                            ? ", far above what covers the points: 'alpha: auto' repairs a smaller solid instead"
                            : "");
@@ -183,9 +177,7 @@ double radius_in_edges(const AlphaSolidResult& result) {
             const double squared = result.alpha * result.alpha - (deficits[a] + deficits[b]) / 2;
             ratios.push_back(std::sqrt(std::max(0.0, squared)) / (mesh.positions[a] - mesh.positions[b]).norm());
         }
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::ranges::nth_element(ratios, middle);
-    return *middle;
+    return median(ratios);
 }
 
 /// Signs that a chosen alpha is too large. `edges`: radius_in_edges().
@@ -214,7 +206,7 @@ std::string ambiguity_text(const AlphaSolidResult& result, double edges) {
                                     result.interior_points.size(), result.tets.positions.size(),
                                     by_count(result.interior_points.size(), "lies", "lie")));
     if (signs.empty()) return {};
-    return joined(signs) +
+    return enumerated(signs) +
            ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can; "
            "outlier-removal before, a lower coverage, or more points in gaps and thin parts allow a smaller alpha";
 }

@@ -12,6 +12,8 @@
 
 #include "alpha_solid/sphere_polynomials.hpp"
 
+#include "scanmill/geometry/spatial/vectors.hpp"
+
 namespace scanmill::alpha {
 
 namespace {
@@ -375,10 +377,7 @@ CellSpheres cell_spheres(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3
 CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, double largest, unsigned facets) {
     // Sorted by coordinates, so that the result does not depend on the corners' numbers.
     std::array<int, 4> by_position{0, 1, 2, 3};
-    std::ranges::sort(by_position, [&](int a, int b) {
-        const Vec3 &p = *given[a].position, &q = *given[b].position;
-        return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
-    });
+    std::ranges::sort(by_position, is_lower, [&](int i) -> const Vec3& { return *given[i].position; });
     const WeightedCorners corners{given[by_position[0]], given[by_position[1]], given[by_position[2]],
                                   given[by_position[3]]};
     unsigned requested = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::alpha {
 
@@ -24,23 +25,19 @@ void walk(const TetMesh& tets, std::vector<u32>& stack, u32 seed, const Enter& e
     }
 }
 
-bool is_less(const Vec3& a, const Vec3& b) {
-    return std::ranges::lexicographical_compare(std::span(a.data(), 3), std::span(b.data(), 3));
-}
-
 /// The properties that decide which component is the largest, whatever the order of the points.
 struct Component {
     std::size_t points = 0;
-    Vec3 lowest, highest;  // by x, then y, then z
+    Vec3 lowest = Vec3::Zero(), highest = Vec3::Zero();  // by x, then y, then z
 
     void add(const Vec3& p) {
-        if (points == 0 || is_less(p, lowest)) lowest = p;
-        if (points == 0 || is_less(highest, p)) highest = p;
+        if (points == 0 || is_lower(p, lowest)) lowest = p;
+        if (points == 0 || is_lower(highest, p)) highest = p;
         ++points;
     }
     bool is_larger_than(const Component& other) const {
         if (points != other.points || points == 0) return points > other.points;
-        return lowest == other.lowest ? is_less(highest, other.highest) : is_less(lowest, other.lowest);
+        return lowest == other.lowest ? is_lower(highest, other.highest) : is_lower(lowest, other.lowest);
     }
 };
 
@@ -108,15 +105,13 @@ IncrementalComponents::IncrementalComponents(const TetMesh& tets, std::span<cons
       next_(tets.cells.size()),
       cell_count_(tets.cells.size()),
       point_count_(tets.cells.size()),
-      first_(tets.positions.size() + 1, 0u),
-      around_(4 * tets.cells.size()),
+      cells_at_(tets.positions.size(),
+                [&](auto&& add) {
+                    for (u32 cell = 0; cell < tets.cells.size(); ++cell)
+                        for (const u32 vertex : tets.cells[cell]) add(vertex, cell);
+                }),
       components_with_(tets.positions.size() + 1, 0u),
       visited_(tets.positions.size(), 0u) {
-    for (const Tetrahedron& cell : tets_.cells)
-        for (u32 vertex : cell) ++first_[vertex];
-    for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
-    for (u32 c = 0; c < tets_.cells.size(); ++c)
-        for (u32 vertex : tets_.cells[c]) around_[--first_[vertex]] = c;
     for (u32 cell = 0; cell < labels.size(); ++cell)
         if (labels[cell] != outside) add(cell);
 }
@@ -166,9 +161,8 @@ std::size_t IncrementalComponents::common_points(u32 smaller, u32 larger) {
 }
 
 bool IncrementalComponents::contains(u32 component, u32 vertex) {
-    for (u32 i = first_[vertex]; i < first_[vertex + 1]; ++i)
-        if (is_in_[around_[i]] && components_.find(around_[i]) == component) return true;
-    return false;
+    return std::ranges::any_of(cells_at_[vertex],
+                               [&](u32 cell) { return is_in_[cell] && components_.find(cell) == component; });
 }
 
 }  // namespace scanmill::alpha

@@ -6,6 +6,7 @@
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/data/tets.hpp"
+#include "scanmill/geometry/spatial/lists.hpp"
 
 namespace scanmill::alpha {
 
@@ -58,8 +59,7 @@ private:
     Array<u32> next_;
     /// At the root of a component.
     Array<u32> cell_count_, point_count_;
-    /// Cells round vertex v: around_[first_[v]] up to around_[first_[v + 1]].
-    Array<u32> first_, around_;
+    Lists<> cells_at_;
     /// Per number of points, the components that have as many.
     Array<u32> components_with_;
     std::size_t most_points_ = 0;

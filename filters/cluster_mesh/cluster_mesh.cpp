@@ -16,15 +16,18 @@
 #include "cluster_mesh/triangulation.hpp"
 #include "edge_flip/edge_flip.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/finished_mesh.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
 
 namespace scanmill {
 
@@ -177,11 +180,6 @@ void require_in_range(const ClusterMeshParams& params) {
     };
     require_length("max-edge", params.max_edge);
     require_length("slice", params.slice);
-    const auto finite = [](double number) { return std::isfinite(number); };
-    const auto zero = [](double number) { return number == 0; };
-    if (params.up.size() != 3 || !std::ranges::all_of(params.up, finite) || std::ranges::all_of(params.up, zero))
-        throw Error("up is [{}]; it must be three numbers, not all 0", fmt::join(params.up, ", "))
-            .hint("`up: [0, 0, 1]` is the direction of z");
     const auto require_angle = [](const char* name, const Angle& angle, double most, bool inclusive) {
         const double degrees = angle.in_degrees();
         if (!(degrees > 0 && (inclusive ? degrees <= most : degrees < most)))
@@ -201,9 +199,7 @@ double median_distance(const DistinctPoints& points, const Neighbourhoods& neigh
         const u32 other = nearest[std::min(rank, nearest.size() - 1)];
         squares[point] = (points.positions[other] - points.positions[point]).squaredNorm();
     }
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::ranges::nth_element(squares, middle);
-    return std::sqrt(*middle);
+    return std::sqrt(median(squares));
 }
 
 /// For hints: 2.5 spacings, where those of near-duplicates do not count. On a square grid the eighth nearest point is
@@ -353,19 +349,12 @@ void unite_along_triangles(Clusters& clusters, const Surface& surface) {
 
 /// Replaces older columns of the same names, with a warning.
 void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh, Context& context) {
-    ColumnTable others;
-    for (const Column& column : mesh.vertex_columns)
-        if (column.name() == "cluster-1" || column.name() == "cluster-2")
-            context.warn(fmt::format("the scan's column `{}` is replaced", column.name()));
-        else
-            others.add(column);
-    mesh.vertex_columns = std::move(others);
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
         for (u32 point = 0; point < numbers.of_point.size(); ++point)
             if (const u32 vertex = finished.vertex_of_point[point]; vertex != growing::invalid_index)
                 values[vertex] = numbers.of_point[point];
-        mesh.vertex_columns.add(Column(name, 1, Buffer<u32>(std::move(values))));
+        add_column(mesh.vertex_columns, Column(name, 1, Buffer<u32>(std::move(values))), context);
     };
     column("cluster-1", clusters.first_level());
     column("cluster-2", clusters.second_level());
@@ -407,6 +396,7 @@ void report(const ClusterMeshResult& result, std::size_t points, Context& contex
 ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params);
+    const Vec3 up = direction_of(params.up, "up");
     const DistinctPoints points = growing::distinct_points_of(cloud.positions.span());
     growing::require_area(points, cloud.size());
     const Neighbourhoods neighbourhoods(points, context.threads());
@@ -427,7 +417,6 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
                     std::move(radii), std::move(density), false);
     context.progress(0.3);
 
-    const Vec3 up = Vec3(params.up[0], params.up[1], params.up[2]).stableNormalized();
     const WinnerLimits winner{std::cos(params.max_normal_angle.in_radians()) - 1e-9,
                               std::cos(params.neighbour_angle.in_radians()) + 1e-9,
                               std::cos(params.overlap_angle.in_radians()), std::tan(params.overlap_angle.in_radians())};

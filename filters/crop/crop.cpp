@@ -13,11 +13,15 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 
 namespace {
+
+constexpr std::string_view need = "cropping needs at least 1";
 
 std::string text_of(const Vec3& position) {
     return fmt::format("({:.9g}, {:.9g}, {:.9g})", position.x(), position.y(), position.z());
@@ -157,34 +161,22 @@ CropResult crop_to(const Chunks& chunks, const Region& region, Context& context)
 
 // Refusals.
 
-void require_number(double value, std::string_view what) {
-    if (!std::isfinite(value)) throw Error("{} is {} u; it must be finite", what, value).hint("give a finite length");
-}
-
 void require_distance(const std::optional<Length>& length, std::string_view what) {
-    if (!length) return;
-    require_number(length->value(), what);
-    if (length->value() < 0)
+    if (length && !(length->value() >= 0 && std::isfinite(length->value())))
         throw Error("{} is {} u; it must be 0 or more", what, length->value()).hint("give a length of 0 or more");
 }
 
-std::vector<Vec3> triples_of(const std::vector<Length>& lengths, std::size_t expected, std::string_view what) {
-    if (lengths.size() != expected)
-        throw Error("{} has {}; it needs {}", what, count_text(lengths.size(), "length", "lengths"), expected)
-            .hint(expected == 6 ? "give x, y, z of the low corner, then of the high corner" : "give x, y, z");
-    for (const Length& length : lengths) require_number(length.value(), fmt::format("a length of {}", what));
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i < expected; i += 3)
-        points.emplace_back(lengths[i].value(), lengths[i + 1].value(), lengths[i + 2].value());
-    return points;
-}
-
-void require_low_below_high(const BoundingBox& box) {
+BoundingBox box_of(std::span<const Length> lengths) {
+    if (lengths.size() != 6)
+        throw Error("`box` has {}; it needs 6", count_text(lengths.size(), "length", "lengths"))
+            .hint("give x, y, z of the low corner, then of the high corner");
+    const BoundingBox box{position_of(lengths.first(3), "`box`"), position_of(lengths.last(3), "`box`")};
     for (int axis = 0; axis < 3; ++axis)
         if (box.low[axis] > box.high[axis])
             throw Error("the box's low corner is above its high corner along {}: {:.9g} and {:.9g} u", "xyz"[axis],
                         box.low[axis], box.high[axis])
                 .hint("give x, y, z of the low corner first, then those of the high corner");
+    return box;
 }
 
 /// Throws Error unless exactly one region is given, whole, with valid numbers.
@@ -208,21 +200,11 @@ void require_one_region(const CropParams& params) {
     require_distance(params.within, "`within`");
 }
 
-void require_countable(std::size_t points) {
-    if (points == 0)
-        throw Error("the cloud has 0 points; cropping needs at least 1")
-            .hint("`scanmill info` shows what a file contains");
-    if (points > ~u32(0))
-        throw Error("the cloud has {} points; at most {} are supported", points, ~u32(0)).hint("split the scan");
-}
-
 CropResult crop_alone(const Chunks& chunks, const CropParams& params, Context& context) {
     const Vec3& origin = chunks.frame.origin;
     const std::string_view unit = symbol(chunks.frame.unit);
     if (params.box) {
-        const std::vector<Vec3> corners = triples_of(*params.box, 6, "`box`");
-        const BoundingBox box{corners[0], corners[1]};
-        require_low_below_high(box);
+        const BoundingBox box = box_of(*params.box);
         const BoxRegion region{box, origin,
                                fmt::format("in the box from {} to {} {}", text_of(box.low), text_of(box.high), unit)};
         return crop_to(chunks, region, context);
@@ -231,7 +213,7 @@ CropResult crop_alone(const Chunks& chunks, const CropParams& params, Context& c
         throw Error("`within` is {} u, but no points and no mesh are wired to `near`; it needs 1 of them",
                     params.within->value())
             .hint("write `in: {points: …, near: …}`, or give a `box` or a `centre` with `radius`");
-    const Vec3 centre = triples_of(*params.centre, 3, "`centre`").front();
+    const Vec3 centre = position_of(*params.centre, "`centre`");
     const double radius = params.radius->value();
     const BallRegion region{centre, origin, radius,
                             fmt::format("within {:.9g} {} of {}", radius, unit, text_of(centre))};
@@ -244,15 +226,14 @@ Buffer<Vec3> positions_beside(const PointCloud& cloud, const Frame& near, const 
         throw Error("the {} points are in {}, and the {} points or vertices at `near` in {}; both need one unit",
                     cloud.size(), symbol(cloud.frame.unit), positions.size(), symbol(near.unit))
             .hint("convert one of them (u: a unit that is not declared)");
-    const Vec3 shift = near.origin - cloud.frame.origin;
-    return shift.isZero(0) ? positions : translated(positions, shift);
+    return translated(positions, near.origin - cloud.frame.origin);
 }
 
 /// Throws Error for everything that is refused before a tree is made.
 void require_near(const PointCloud& cloud, std::span<const Vec3> near, std::string_view what,
                   const CropParams& params) {
     require_one_region(params);
-    require_countable(cloud.size());
+    require_points(cloud.size(), need);
     if (!params.within)
         throw Error("{} {} are wired to `near`, but `within` is not given", near.size(), what)
             .hint("give `within`, or remove `near` from `in`");
@@ -273,14 +254,13 @@ CropResult crop_near(const PointCloud& cloud, const TriangleTree& tree, const Cr
 
 CropResult crop(const PointCloud& cloud, const CropParams& params, Context& context) {
     require_one_region(params);
-    require_countable(cloud.size());
-    require_finite(cloud.positions.span());
+    require_points(cloud, need);
     return crop_alone(chunks_of(cloud), params, context);
 }
 
 CropResult crop(const PointStream& scan, const CropParams& params, Context& context) {
     require_one_region(params);
-    require_countable(scan.size());
+    require_points(scan.size(), need);
     return crop_alone(chunks_of(scan, context.threads()), params, context);
 }
 

@@ -10,6 +10,7 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
@@ -89,16 +90,8 @@ void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& 
     if (unused > 0)
         context.warn(fmt::format("{} in no triangle {} dropped", count_text(unused, "vertex", "vertices"),
                                  by_count(unused, "is", "are")));
-    const auto names = [](const ColumnTable& columns) {
-        std::string text;
-        for (const Column& column : columns) text += (text.empty() ? "'" : ", '") + column.name() + "'";
-        return text;
-    };
-    if (!mesh.face_columns.empty())
-        context.warn(
-            fmt::format("face columns are dropped, because the triangles are new: {}", names(mesh.face_columns)));
-    if (!mesh.edge_columns.empty())
-        context.warn(fmt::format("edge columns are dropped, because the edges are new: {}", names(mesh.edge_columns)));
+    warn_of_dropped(mesh.face_columns, "face columns", "the triangles are new", context);
+    warn_of_dropped(mesh.edge_columns, "edge columns", "the edges are new", context);
     if (mesh.vertex_columns.find("class"))
         context.warn("the vertex column 'class' is replaced by the classes of this filter");
     std::vector<bool> is_taken(mesh.positions.size(), false);
@@ -114,14 +107,10 @@ void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& 
 }
 
 /// Data points in the mesh's coordinates.
-Array<Vec3> data_positions(const PointCloud& points, const Frame& frame) {
+Buffer<Vec3> data_positions(const PointCloud& points, const Frame& frame) {
     require_finite(points.positions.span());
     require_same_frame(points.frame, "the points are", frame, "the mesh");
-    Array<Vec3> positions(points.positions.begin(), points.positions.end());
-    const Vec3 shift = points.frame.origin - frame.origin;
-    if (!shift.isZero(0))
-        for (Vec3& position : positions) position += shift;
-    return positions;
+    return translated(points.positions, points.frame.origin - frame.origin);
 }
 
 /// The vertices of the result: numbers, and class.
@@ -277,7 +266,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     (void)limits_for(params, steering_share, rounding);  // refuses before any work
     const double max_error =
         std::max(params.outside.value_or(params.max_error).value(), params.inside.value_or(params.max_error).value());
-    Array<Vec3> data;
+    Buffer<Vec3> data;
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
     (void)EditableMesh(mesh, opposite);  // refuses repeated vertices and several fans, which the rest relies on

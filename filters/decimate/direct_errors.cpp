@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::decimating {
 
@@ -65,7 +66,7 @@ bool DirectErrors::assign(std::vector<HoleTriangle>& triangles, u32 first, std::
     for (u32 t = 0; t < triangles.size(); ++t) {
         const auto& [i, k, j] = triangles[t].corners;
         const Vec3 &a = corners_[i].position, &b = corners_[k].position, &c = corners_[j].position;
-        const Vec3 normal = (b - a).cross(c - a);
+        const Vec3 normal = area_vector(a, b, c);
         for_each_point(i, k, j, [&](std::size_t p) {
             owners[begin + p] = first + t;
             const double distance = (points_[p] - nearest_on_triangle(points_[p], a, b, c)).norm();

@@ -10,9 +10,11 @@
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::decimating {
 
@@ -132,10 +134,8 @@ bool FeatureNetwork::merge_small_faces(double least_area) {
     }
     if (sharp.empty()) return false;
     std::vector<double> areas(triangles, 0);
-    for (u32 t = 0; t < triangles; ++t) {
-        const auto& [a, b, c] = mesh_.triangles[t];
-        areas[faces.find(t)] += (position(b) - position(a)).cross(position(c) - position(a)).norm() / 2;
-    }
+    for (u32 t = 0; t < triangles; ++t)
+        areas[faces.find(t)] += area_vector(mesh_.positions, mesh_.triangles[t]).norm() / 2;
     struct Border {
         double area;
         u32 face, half_edge;
@@ -226,9 +226,7 @@ void FeatureNetwork::find_singular() {
             lengths.push_back((position(b) - position(a)).norm());
         }
     if (lengths.empty()) return;
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::ranges::nth_element(lengths, middle);
-    const double edge = *middle;
+    const double edge = median(lengths);
     for (double& defect : defects) defect = 2 * std::numbers::pi - defect;
 
     const auto for_each_neighbour = [&](u32 vertex, auto&& action) {

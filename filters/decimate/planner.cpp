@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::decimating {
 
@@ -25,8 +26,7 @@ bool meet(const BoundingBox& one, const BoundingBox& other) {
 }  // namespace
 
 Vec3 Planner::normal_of(const Triangle& t) const {
-    const Vec3& origin = surface_.position(t[0]);
-    return (surface_.position(t[1]) - origin).cross(surface_.position(t[2]) - origin);
+    return area_vector(surface_.position(t[0]), surface_.position(t[1]), surface_.position(t[2]));
 }
 
 double Planner::least_angle_sine(const Triangle& t) const {

@@ -9,6 +9,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -43,10 +44,7 @@ Farthest farthest(std::span<const Vec3> positions, unsigned threads, const Measu
 
 std::size_t distinct_points(std::span<const Vec3> positions) {
     std::vector<Vec3> sorted(positions.begin(), positions.end());
-    const auto less = [](const Vec3& a, const Vec3& b) {
-        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-    };
-    std::ranges::sort(sorted, less);
+    std::ranges::sort(sorted, is_lower);
     std::size_t distinct = positions.empty() ? 0 : 1;
     for (std::size_t i = 1; i < positions.size(); ++i) distinct += sorted[i] != sorted[i - 1];
     return distinct;

@@ -11,6 +11,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -23,9 +24,7 @@ Array<u32> rows_by_position(std::span<const Vec3> positions) {
     Array<u32> rows(positions.size());
     std::iota(rows.begin(), rows.end(), 0);
     std::ranges::sort(rows, [&](u32 a, u32 b) {
-        const Vec3 &p = positions[a], &q = positions[b];
-        if (p == q) return a < b;
-        return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+        return positions[a] == positions[b] ? a < b : is_lower(positions[a], positions[b]);
     });
     return rows;
 }

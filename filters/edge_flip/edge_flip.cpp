@@ -9,6 +9,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
 #include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
@@ -347,21 +348,7 @@ void require_usable(const TriangleMesh& mesh, const EdgeFlipParams& params) {
     if (params.max_edge && !(params.max_edge->value() > 0))
         throw Error("max-edge must be above 0; it is {:g} u", params.max_edge->value())
             .hint("leave max-edge out to allow new edges of any length");
-    if (mesh.triangles.empty())
-        throw Error("the mesh has no triangles; edge-flip needs at least one")
-            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
-    require_consistent(mesh);
-    require_finite(mesh.positions.span(), "vertices");
-}
-
-void warn_of_dropped(const ColumnTable& columns, std::string_view element, Context& context) {
-    if (columns.empty()) return;
-    std::string names;
-    for (const Column& column : columns) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", column.name());
-    context.warn(
-        fmt::format("{} {}: dropped, because flips replace {}s",
-                    by_count(columns.size(), fmt::format("{} column", element), fmt::format("{} columns", element)),
-                    names, element == "face" ? "triangle" : element));
+    require_triangles(mesh, "edge-flip needs at least one");
 }
 
 void warn_of_left(const BlockedEdges& left, const EdgeFlipParams& params, Context& context) {
@@ -398,8 +385,8 @@ EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params,
     if (const std::size_t repeats = repeated_positions(mesh); repeats > 0)
         context.warn(fmt::format("{} the position of another one; the mesh is open between them, and stays so",
                                  count_text(repeats, "vertex has", "vertices have")));
-    warn_of_dropped(mesh.face_columns, "face", context);
-    warn_of_dropped(mesh.edge_columns, "edge", context);
+    warn_of_dropped(mesh.face_columns, "face columns", "flips replace triangles", context);
+    warn_of_dropped(mesh.edge_columns, "edge columns", "flips replace edges", context);
     warn_of_left(result.left, params, context);
     result.mesh.frame = mesh.frame;
     result.mesh.positions = mesh.positions;

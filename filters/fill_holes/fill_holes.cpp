@@ -14,6 +14,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 
 namespace scanmill {
@@ -30,11 +31,7 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
     if (params.max_length && !(params.max_length->value() > 0))
         throw Error("max-length must be above 0; it is {:g} u", params.max_length->value())
             .hint("leave max-length out to fill loops of any length");
-    if (mesh.triangles.empty())
-        throw Error("the mesh has no triangles; fill-holes needs at least one")
-            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
-    require_consistent(mesh);
-    require_finite(mesh.positions.span(), "vertices");
+    require_triangles(mesh, "fill-holes needs at least one");
     std::size_t repeats = 0, first = 0;
     for (std::size_t t = mesh.triangles.size(); t-- > 0;)
         if (half_edges::has_repeated_vertex(mesh.triangles[t])) ++repeats, first = t;

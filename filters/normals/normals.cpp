@@ -11,10 +11,14 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
+#include "scanmill/geometry/spatial/direction.hpp"
+#include "scanmill/geometry/spatial/lists.hpp"
 
 namespace scanmill {
 
@@ -79,10 +83,7 @@ std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTre
     std::vector<signed char> sides(field.directions.size(), 0);
     Array<Vec3> sums(field.directions.size(), Vec3::Zero());
     Vec3 scanner = Vec3::Zero();
-    if (params.scanner)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            scanner[static_cast<Eigen::Index>(axis)] =
-                (*params.scanner)[axis].value() - cloud.frame.origin[static_cast<Eigen::Index>(axis)];
+    if (params.scanner) scanner = position_of(*params.scanner, "scanner") - cloud.frame.origin;
     for (std::size_t row = 0; row < cloud.size(); ++row) {
         const Vec3 direction = params.scanner
                                    ? Vec3(scanner - cloud.positions[row])
@@ -100,18 +101,16 @@ std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTre
 /// The neighbours of every position in both directions.
 class Graph {
 public:
-    explicit Graph(const Field& field) : field_(field), begin_(field.directions.size() + 1, 0) {
-        for (const u32 to : field.nearest) ++begin_[to + 1];
-        for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-        reverse_.resize(field.nearest.size());
-        std::vector<u64> next(begin_.begin(), begin_.end() - 1);
-        for (std::size_t slot = 0; slot < field.nearest.size(); ++slot)
-            reverse_[next[field.nearest[slot]]++] = static_cast<u32>(slot / field.each);
-    }
+    explicit Graph(const Field& field)
+        : field_(field),
+          reverse_(field.directions.size(), [&](auto&& add) {
+              for (u32 i = 0; i < field.directions.size(); ++i)
+                  for (const u32 to : field.of(i)) add(to, i);
+          }) {}
     template <class Action>
     void for_each_neighbour(u32 i, Action&& action) const {
         for (const u32 other : field_.of(i)) action(other);
-        for (u64 slot = begin_[i]; slot < begin_[i + 1]; ++slot) action(reverse_[slot]);
+        for (const u32 other : reverse_[i]) action(other);
     }
     DisjointSets components() const {
         DisjointSets sets(field_.directions.size());
@@ -122,8 +121,7 @@ public:
 
 private:
     const Field& field_;
-    std::vector<u64> begin_;
-    Array<u32> reverse_;
+    Lists<> reverse_;
 };
 
 /// Components, and their positions, that have their side from their highest position alone. The largest component of
@@ -242,13 +240,8 @@ PointCloud with_normals(const PointCloud& cloud, std::span<const u32> index_of_r
             values[3 * row + axis] = static_cast<float>(sides[index] < 0 ? -value : value);
         }
     }
-    PointCloud result{cloud.frame, cloud.positions, {}};
-    for (const Column& column : cloud.columns)
-        if (column.name() == "normal")
-            context.warn("the column 'normal' of the input is replaced");
-        else
-            result.columns.add(column);
-    result.columns.add(Column("normal", 3, Buffer<float>(std::move(values))));
+    PointCloud result = cloud;
+    add_column(result.columns, Column("normal", 3, Buffer<float>(std::move(values))), context);
     return result;
 }
 
@@ -256,24 +249,12 @@ void require_usable(const PointCloud& cloud, const NormalsParams& params) {
     if (params.neighbours < 2 || params.neighbours > 1000)
         throw Error("neighbours must be from 2 to 1000; it is {}", params.neighbours)
             .hint("16 suits most scans; more for noisy ones");
-    if (params.scanner && params.scanner->size() != 3)
-        throw Error("scanner needs 3 lengths, x, y and z; it has {}", params.scanner->size())
-            .hint("write `scanner: [0 u, 0 u, 10 u]`");
     if (params.scanner && (params.orient == Orient::tree || params.orient == Orient::none))
         throw Error("scanner is given, but orient is `{}`, which does not use it",
                     params.orient == Orient::tree ? "tree" : "none")
             .hint("leave scanner out, or write `orient: sensor`");
-    if (params.scanner)
-        for (const Length& length : *params.scanner)
-            if (!std::isfinite(length.value()))
-                throw Error("scanner has a coordinate that is NaN or infinite")
-                    .hint("write `scanner: [0 u, 0 u, 10 u]`");
-    if (cloud.size() == 0)
-        throw Error("the cloud has 0 points; normals need at least 3")
-            .hint("`scanmill info` shows what a file contains");
-    if (cloud.size() > ~u32(0))
-        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0)).hint("split the scan");
-    require_finite(cloud.positions.span());
+    if (params.scanner) position_of(*params.scanner, "scanner");
+    require_points(cloud, "normals need at least 3");
 }
 
 /// The column `approach` if the directions come from it; throws Error if it is not usable.
@@ -309,13 +290,11 @@ void report_doubts(const NormalsResult& result, const Guessed& guessed, std::siz
 
 /// Doubts neighbours that surround the scan, or fill a volume.
 void doubt_variation(Array<double> variation, std::size_t neighbours, Context& context) {
-    const auto middle = variation.begin() + static_cast<std::ptrdiff_t>(variation.size() / 2);
-    std::nth_element(variation.begin(), middle, variation.end());
-    if (*middle > doubtful_variation)
+    if (const double share = median(variation); share > doubtful_variation)
         context.doubt(fmt::format(
             "the {} neighbours of a point form no surface: {:.0f} % of their spread is across the plane that fits "
             "them (median; a hemisphere has 11 %, a ball 33 %); take fewer neighbours, or scan more points",
-            neighbours, 100 * *middle));
+            neighbours, 100 * share));
 }
 
 void report(const NormalsResult& result, Context& context) {

@@ -13,8 +13,10 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill {
@@ -43,12 +45,7 @@ double squared_distance(const Vec3& a, const Vec3& b) {
 }
 
 void require_valid(const PointCloud& cloud, const OutlierRemovalParams& params) {
-    if (cloud.size() == 0)
-        throw Error("the cloud has no points; outlier removal needs at least one")
-            .hint("`scanmill info` shows what a file contains");
-    if (cloud.size() > ~u32(0))
-        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0))
-            .hint("thin the scan first, with `voxel-thin`");
+    require_points(cloud, "outlier removal needs at least 1");
     if (params.neighbours < 1 || params.neighbours > most_neighbours)
         throw Error("neighbours is {}; it must be from 1 to {}", params.neighbours, most_neighbours)
             .hint("16 fits most scans");
@@ -59,7 +56,6 @@ void require_valid(const PointCloud& cloud, const OutlierRemovalParams& params) 
             throw Error("radius is {} u; it must be 0 or more", radius).hint("`3 spacing` fits most scans");
     if (const double share = params.min_component.value(); !(share >= 0 && share <= 1))
         throw Error("min-component is {}; it must be from 0 to 1", share).hint("`0.1 %` fits most scans");
-    require_finite(cloud.positions.span());
 }
 
 /// The distinct positions of a cloud with their nearest others.
@@ -106,13 +102,6 @@ double last_distance(std::span<const Neighbour> neighbours, std::span<const u32>
     return std::numeric_limits<double>::infinity();
 }
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemovalParams& params, Context& context) {
     Neighbourhoods result{PointTree(points, context.threads()), 0, {}, {}, {}, 0};
     context.check_cancelled();
@@ -143,7 +132,7 @@ Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemo
         const std::size_t now = done += batch.indices.size();
         context.progress(0.2 + 0.6 * static_cast<double>(now) / static_cast<double>(size));
     });
-    if (params.radius.in() == Length::In::spacing) result.spacing = median(std::move(nearest));
+    if (params.radius.in() == Length::In::spacing && !nearest.empty()) result.spacing = median(nearest);
     return result;
 }
 
@@ -334,15 +323,10 @@ void require_kept(std::size_t kept, std::size_t points, const OutlierRemovalPara
 /// All points, with the column `outlier`.
 PointCloud marked(const PointCloud& cloud, std::span<const u32> index_of_row, std::span<const u8> is_outlier,
                   Context& context) {
-    PointCloud result{cloud.frame, cloud.positions, {}};
-    for (const Column& column : cloud.columns)
-        if (column.name() == "outlier")
-            context.warn("the scan's column `outlier` is replaced");
-        else
-            result.columns.add(column);
+    PointCloud result = cloud;
     Array<u8> values(cloud.size());
     for (std::size_t row = 0; row < values.size(); ++row) values[row] = is_outlier[index_of_row[row]];
-    result.columns.add(Column("outlier", 1, Buffer<u8>(std::move(values))));
+    add_column(result.columns, Column("outlier", 1, Buffer<u8>(std::move(values))), context);
     return result;
 }
 

@@ -7,9 +7,12 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/patches/a_patch.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill {
@@ -71,9 +74,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     // A ray decides nothing about an open surface.
     const auto is_inside = [&](const Vec3& point, const Vec3& nearest, u32 triangle) {
         if (is_closed) return surface.is_inside(point);
-        const Triangle& t = mesh.triangles[triangle];
-        const Vec3& a = mesh.positions[t[0]];
-        return (point - nearest).dot((mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a)) < 0;
+        return (point - nearest).dot(area_vector(mesh.positions, mesh.triangles[triangle])) < 0;
     };
     Array<double> distances(points.size());
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -104,21 +105,14 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
         throw Error("none of {} is within {:.3g} {}, a tenth of the surface's diagonal, of the surface",
                     count_text(points.size(), "point", "points"), limit, symbol(points.frame.unit))
             .hint("are points and patches in the same frame and unit?");
-    std::ranges::sort(found);
     const auto count = static_cast<double>(found.size());
     result.unlocated = distances.size() - found.size();
     result.rms = std::sqrt(squares / count);
-    result.p95 = found[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1];
-    result.max = found.back();
-    result.points.frame = points.frame;
-    result.points.positions = points.positions;
-    for (const Column& column : points.columns) {
-        if (column.name() == column_name)
-            context.warn("the points' column 'distance-to-patches' is replaced");
-        else
-            result.points.columns.add(column);
-    }
-    result.points.columns.add(Column(column_name, 1, Buffer<double>(std::move(distances))).with_length_exponent(1));
+    result.p95 = quantile(found, 0.95);
+    result.max = *std::ranges::max_element(found);
+    result.points = points;
+    add_column(result.points.columns,
+               Column(column_name, 1, Buffer<double>(std::move(distances))).with_length_exponent(1), context);
     if (result.unlocated > 0)
         context.warn(fmt::format("{} of {} points {} no distance: farther than {:.3g} away, or nearest to the boundary",
                                  result.unlocated, points.size(), by_count(result.unlocated, "has", "have"), limit));

@@ -15,12 +15,16 @@
 #include "poisson/octree_surface.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -48,12 +52,7 @@ void require_usable(const PointCloud& cloud, const PoissonParams& params) {
     if (params.max_distance && !(params.max_distance->value() > 0 && std::isfinite(params.max_distance->value())))
         throw Error("max-distance must be above 0; it is {:g} u", params.max_distance->value())
             .hint("`5 spacing` suits most scans; leave max-distance out to keep every distance");
-    if (cloud.size() == 0)
-        throw Error("the cloud has 0 points; poisson needs at least 4 with normals")
-            .hint("`scanmill info` shows what a file contains");
-    if (cloud.size() > ~u32(0))
-        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0)).hint("split the scan");
-    require_finite(cloud.positions.span());
+    require_points(cloud, "poisson needs at least 4 with normals");
     const Column* normal = cloud.columns.find("normal");
     if (!normal)
         throw Error("the scan has no column 'normal'; poisson needs a normal at every point")
@@ -151,16 +150,6 @@ Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     return {filled.filled, filled.failed};
 }
 
-Array<Vec3> vertex_normals(const TriangleMesh& mesh) {
-    Array<Vec3> normals(mesh.positions.size(), Vec3::Zero());
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3& a = mesh.positions[t[0]];
-        const Vec3 normal = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
-        for (const u32 vertex : t) normals[vertex] += normal;
-    }
-    return normals;
-}
-
 /// By vertex: how the points support it.
 struct Support {
     Array<double> nearest, last;  ///< distances to the nearest and to the 8th nearest position
@@ -182,7 +171,7 @@ Support support_of(const TriangleMesh& mesh, const Oriented& points, const Point
     });
 
     const std::size_t count = mesh.positions.size();
-    const Array<Vec3> outward = vertex_normals(mesh);
+    const Array<Vec3> outward = vertex_area_vectors(mesh);
     Support support{Array<double>(count), Array<double>(count), std::vector<u8>(count), std::vector<u8>(count), {}, 0};
     std::atomic<std::size_t> done = 0;
     for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
@@ -200,9 +189,7 @@ Support support_of(const TriangleMesh& mesh, const Oriented& points, const Point
         context.progress(0.85 + 0.1 * static_cast<double>(done += end - begin) / static_cast<double>(count));
     });
     support.spread = spread;
-    const auto middle = spread.begin() + static_cast<std::ptrdiff_t>(spread.size() / 2);
-    std::nth_element(spread.begin(), middle, spread.end());
-    support.usual = *middle;
+    support.usual = median(spread);
     return support;
 }
 
@@ -239,19 +226,6 @@ std::vector<u8> removed_vertices(const Support& support, const PoissonParams& pa
     return removed;
 }
 
-double twice_area(const TriangleMesh& mesh, const Triangle& t) {
-    const Vec3& a = mesh.positions[t[0]];
-    return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm();
-}
-
-double volume_of(const TriangleMesh& mesh) {
-    const Vec3& apex = mesh.positions[0];
-    double sum = 0;
-    for (const Triangle& t : mesh.triangles)
-        sum += (mesh.positions[t[0]] - apex).dot((mesh.positions[t[1]] - apex).cross(mesh.positions[t[2]] - apex));
-    return sum / 6;
-}
-
 /// The mesh without the removed vertices, with densities.
 TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vector<u8>& removed,
                      const PoissonParams& params) {
@@ -275,11 +249,10 @@ TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vecto
 }
 
 void warn_of_columns(const PointCloud& cloud, Context& context) {
-    std::string names;
+    ColumnTable others;
     for (const Column& column : cloud.columns)
-        if (column.name() != "normal") names += (names.empty() ? "'" : ", '") + column.name() + "'";
-    if (!names.empty())
-        context.warn(fmt::format("columns of the points are dropped, because the vertices are new: {}", names));
+        if (column.name() != "normal") others.add(column);
+    warn_of_dropped(others, "columns of the points", "the vertices are new", context);
 }
 
 void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t open_cracks, bool inside_out,
@@ -339,7 +312,7 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     const auto ends = static_cast<std::size_t>(
         std::ranges::count_if(boundary_loops(whole, half_edges::opposites(whole)),
                               [](const auto& loop) { return loop.size() > most_crack_edges; }));
-    const bool inside_out = ends == 0 && volume_of(whole) < 0;
+    const bool inside_out = ends == 0 && signed_volume(whole.positions, whole.triangles) < 0;
 
     result.missed = missed_share(whole, tree.positions(), support, result.cell, context);
 
@@ -347,7 +320,7 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     double area = 0, invented = 0;
     for (const Triangle& t : whole.triangles) {
         if (removed[t[0]] || removed[t[1]] || removed[t[2]]) continue;
-        const double its = twice_area(whole, t);
+        const double its = area_vector(whole.positions, t).norm();
         area += its;
         invented += its * (support.far[t[0]] + support.far[t[1]] + support.far[t[2]]) / 3;
     }

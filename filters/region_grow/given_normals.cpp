@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::growing {
 
@@ -44,9 +45,7 @@ std::vector<std::optional<Vec3>> directions_of(const Column& column, const Disti
     for (const auto& [point, row] : points.repeats) {
         std::optional<Vec3>& known = directions[point];
         const std::optional<Vec3> other = direction(column, row);
-        if (other &&
-            (!known || std::lexicographical_compare(other->begin(), other->end(), known->begin(), known->end())))
-            known = other;
+        if (other && (!known || is_lower(*other, *known))) known = other;
     }
     return directions;
 }

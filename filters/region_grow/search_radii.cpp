@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 
 namespace scanmill::growing {
 
@@ -23,14 +24,6 @@ constexpr double least_ratio = 0.55, largest_ratio = 1.15;
 /// Limit of a point's given size and estimate, in medians of those of its neighbours.
 constexpr double largest_of_median = 1.15;
 constexpr std::size_t chunk = 1 << 12;
-
-/// The upper of two medians; reorders the values. Pre: at least one, none NaN. Cost: linear.
-template <class Values>
-double median(Values& values) {
-    const auto middle = std::next(values.begin(), static_cast<std::ptrdiff_t>(values.size() / 2));
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// The voxel size that puts the last counted neighbour at its distance, for a surface that meets one voxel per squared
 /// edge.

@@ -9,7 +9,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <unordered_map>
 
 #include "repair/orient_soup.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
@@ -17,9 +16,11 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/spatial/cell_grid.hpp"
 
 namespace scanmill {
 
@@ -31,19 +32,6 @@ double area_of(std::span<const Vec3> positions, const Triangle& triangle) {
     const auto& [a, b, c] = triangle;
     return (positions[b] - positions[a]).cross(positions[c] - positions[a]).norm() / 2;
 }
-
-/// A cell of a grid, for vertices near each other.
-struct Cell {
-    std::array<std::int64_t, 3> at;
-    bool operator==(const Cell&) const = default;
-};
-struct CellHash {
-    std::size_t operator()(const Cell& cell) const {
-        u64 hash = 0;
-        for (const std::int64_t i : cell.at) hash = (hash ^ static_cast<u64>(i)) * 0x9e3779b97f4a7c15u + (hash >> 29);
-        return hash;
-    }
-};
 
 class Repair {
 public:
@@ -101,31 +89,25 @@ private:
     }
 
     void stitch_boundary(double distance) {
-        const BoundingBox box = bounding_box(positions_);
-        // Rounding moves a vertex by less than the thousandth that cells are larger than the distance, and their
-        // numbers fit into 64 bits.
-        const double edge = std::max(distance * (1 + 0x1p-10), box.diagonal() * 0x1p-40);
-        std::unordered_map<Cell, std::vector<u32>, CellHash> kept;
+        CellGrid grid(bounding_box(positions_), distance);
+        std::vector<std::vector<u32>> kept;  // by cell
         std::vector<u32> becomes(joined_.size());
         std::iota(becomes.begin(), becomes.end(), 0);
         for (const u32 v : boundary_vertices()) {
-            Cell own;
-            for (int axis = 0; axis < 3; ++axis)
-                own.at[static_cast<std::size_t>(axis)] =
-                    static_cast<std::int64_t>(std::floor((positions_[v][axis] - box.low[axis]) / edge));
             double nearest = distance * distance;
             u32 found = v;
-            for (int i = 0; i < 27; ++i) {
-                const auto cell =
-                    kept.find({{own.at[0] + i % 3 - 1, own.at[1] + i / 3 % 3 - 1, own.at[2] + i / 9 - 1}});
-                if (cell == kept.end()) continue;
-                for (const u32 other : cell->second) {
+            grid.any_near(positions_[v], [&](u32 cell) {
+                for (const u32 other : kept[cell]) {
                     const double squared = (positions_[other] - positions_[v]).squaredNorm();
                     if (squared < nearest || (squared == nearest && other < found)) nearest = squared, found = other;
                 }
-            }
+                return false;
+            });
             becomes[v] = found;
-            if (found == v) kept[own].push_back(v);
+            if (found != v) continue;
+            const u32 cell = grid.enter(positions_[v]);
+            if (cell == kept.size()) kept.emplace_back();
+            kept[cell].push_back(v);
         }
         for (u32& vertex : joined_) vertex = becomes[vertex];
     }
@@ -487,11 +469,7 @@ void require_usable(const TriangleMesh& mesh, const RepairParams& params) {
     if (!(share >= 0 && share <= 1))
         throw Error("min-component must be from 0 to 100 %; it is {:g} %", 100 * share)
             .hint("`1 %` removes components with less than a hundredth of the area");
-    if (mesh.triangles.empty())
-        throw Error("the mesh has no triangles; repair needs at least one")
-            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
-    require_consistent(mesh);
-    require_finite(mesh.positions.span(), "vertices");
+    require_triangles(mesh, "repair needs at least one");
 }
 
 /// Whether they are edges of triangles, each once.

@@ -8,18 +8,12 @@
 #include <optional>
 #include <utility>
 
+#include "scanmill/geometry/spatial/vectors.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "sculpt/carved_solid.hpp"
 #include "sculpt/sculpt.hpp"
 
 namespace scanmill::sculpting {
-
-/// Compares by x, then y, then z.
-inline bool is_lower(const Vec3& a, const Vec3& b) {
-    if (a.x() != b.x()) return a.x() < b.x();
-    if (a.y() != b.y()) return a.y() < b.y();
-    return a.z() < b.z();
-}
 
 /// The cell whose sorted corners are lower; a total order that does not depend on indices.
 bool is_lower_cell(const TetMesh& tets, u32 a, u32 b);

@@ -7,8 +7,10 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
 
 namespace scanmill {
@@ -95,9 +97,7 @@ double median_error(const Moves& moves) {
     Array<double> errors;
     for (std::size_t i = 0; i < moves.errors.size(); ++i)
         if (!moves.flat[i]) errors.push_back(moves.errors[i]);
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    return *middle;
+    return median(errors);
 }
 
 PointCloud moved_points(const PointCloud& cloud, std::span<const u32> index_of_row, const Moves& moves,
@@ -109,18 +109,11 @@ PointCloud moved_points(const PointCloud& cloud, std::span<const u32> index_of_r
         positions[row] = cloud.positions[row] + offset;
         distances[row] = static_cast<float>(offset.norm());
     }
-    PointCloud result{cloud.frame, std::move(positions), {}};
-    for (const Column& column : cloud.columns) {
-        if (column.name() == "moved") {
-            context.warn("the column 'moved' of the input is replaced");
-            continue;
-        }
-        if (column.name() == "normal")
-            context.warn(
-                "the column 'normal' is that of the points before they moved; the filter normals makes new ones");
-        result.columns.add(column);
-    }
-    result.columns.add(Column("moved", 1, Buffer<float>(std::move(distances))).with_length_exponent(1));
+    PointCloud result{cloud.frame, std::move(positions), cloud.columns};
+    add_column(result.columns, Column("moved", 1, Buffer<float>(std::move(distances))).with_length_exponent(1),
+               context);
+    if (cloud.columns.find("normal"))
+        context.warn("the column 'normal' is that of the points before they moved; the filter normals makes new ones");
     return result;
 }
 
@@ -131,12 +124,7 @@ void require_usable(const PointCloud& cloud, const SmoothParams& params) {
     if (params.radius && !(params.radius->value() > 0 && std::isfinite(params.radius->value())))
         throw Error("radius must be above 0; it is {:g} u", params.radius->value())
             .hint("`3 spacing` suits most scans; leave radius out to use the nearest neighbours");
-    if (cloud.size() == 0)
-        throw Error("the cloud has 0 points; smoothing needs at least 6")
-            .hint("`scanmill info` shows what a file contains");
-    if (cloud.size() > ~u32(0))
-        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0)).hint("split the scan");
-    require_finite(cloud.positions.span());
+    require_points(cloud, "smoothing needs at least 6");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
@@ -137,19 +138,8 @@ void report(const VirtualProbeResult& result, std::size_t made, Context& context
 }
 
 TriangleTree tree_of(const TriangleMesh& mesh, const Frame& frame, unsigned threads) {
-    if (mesh.triangles.empty())
-        throw Error("the mesh has {} and 0 triangles; the ball needs at least 1 to touch",
-                    count_text(mesh.positions.size(), "vertex", "vertices"))
-            .hint("wire the mesh of the part");
-    try {
-        require_consistent(mesh);
-    } catch (Error& error) {
-        if (error.hint().empty()) error.set_hint("the mesh is damaged: make it again");
-        throw;
-    }
-    require_finite(mesh.positions.span(), "vertices");
-    const Vec3 shift = mesh.frame.origin - frame.origin;
-    const Buffer<Vec3> positions = shift.isZero(0) ? mesh.positions : translated(mesh.positions, shift);
+    require_triangles(mesh, "the ball needs at least 1 to touch");
+    const Buffer<Vec3> positions = translated(mesh.positions, mesh.frame.origin - frame.origin);
     return TriangleTree(positions.span(), mesh.triangles.span(), threads);
 }
 

@@ -12,6 +12,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 #include "virtual_scan/scene.hpp"
 
@@ -90,9 +91,7 @@ std::vector<Hit> hits_of(const TriangleMesh& mesh, const View& view) {
         for (std::size_t column = 0; column < view.width; ++column) {
             const std::size_t pixel = row * view.width + column;
             if (image.triangle[pixel] == no_triangle) continue;
-            const auto& [a, b, c] = mesh.triangles[image.triangle[pixel]];
-            const Vec3& corner = mesh.positions[a];
-            Vec3 normal = (mesh.positions[b] - corner).cross(mesh.positions[c] - corner).normalized();
+            Vec3 normal = area_vector(mesh.positions, mesh.triangles[image.triangle[pixel]]).normalized();
             if (normal.dot(view.forward) > 0) normal = -normal;
             hits.push_back({view.point(view.across(column), view.along(row), image.depth[pixel]), normal});
         }

@@ -6,8 +6,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/geometry/spatial/cell_grid.hpp"
 #include "virtual_scan/scene.hpp"
-#include "virtual_scan/seen_points.hpp"
 #include "virtual_scan/view.hpp"
 
 namespace scanmill {
@@ -127,17 +127,25 @@ std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const s
 }
 
 /// Removes, view by view, all but `share` of the hits near kept ones of an earlier view. Returns the number removed.
-std::size_t thin_overlap(std::vector<std::vector<scan::Hit>>& returns, const Vec3& origin, double radius, double share,
-                         const Random& random) {
+std::size_t thin_overlap(std::vector<std::vector<scan::Hit>>& returns, const BoundingBox& box, double radius,
+                         double share, const Random& random) {
     std::size_t dropped = 0;
-    scan::SeenPoints seen(origin, radius);
+    CellGrid grid(box, radius);
+    std::vector<std::vector<Vec3>> seen;  // by cell
     for (std::size_t view = 0; view < returns.size(); ++view) {
         Random draw = random.stream(view);
-        dropped += std::erase_if(
-            returns[view], [&](const scan::Hit& hit) { return seen.near(hit.position) && draw.uniform() >= share; });
-        std::vector<Vec3> kept;
-        for (const scan::Hit& hit : returns[view]) kept.push_back(hit.position);
-        seen.add(kept);
+        dropped += std::erase_if(returns[view], [&](const scan::Hit& hit) {
+            const auto is_near = [&](const Vec3& other) {
+                return (other - hit.position).squaredNorm() < radius * radius;
+            };
+            const auto has_near = [&](u32 cell) { return std::ranges::any_of(seen[cell], is_near); };
+            return grid.any_near(hit.position, has_near) && draw.uniform() >= share;
+        });
+        for (const scan::Hit& hit : returns[view]) {
+            const u32 cell = grid.enter(hit.position);
+            if (cell == seen.size()) seen.emplace_back();
+            seen[cell].push_back(hit.position);
+        }
     }
     return dropped;
 }
@@ -168,7 +176,7 @@ VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams
     const Random random = context.random();
     const double share = params.overlap.value();
     if (share < 1)
-        result.dropped = thin_overlap(returns, scene.box.low, result.resolution, share, random.stream(overlap_stream));
+        result.dropped = thin_overlap(returns, scene.box, result.resolution, share, random.stream(overlap_stream));
 
     Samples samples;
     for (std::size_t number = 0; number < views.size(); ++number) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
 
 namespace scanmill::voxel {
@@ -43,14 +44,6 @@ void require_enough(std::size_t points, u32 neighbours) {
         .hint("give a bin-size, or fewer neighbours (at least 6)");
 }
 
-/// The smallest size such that at least this share of the sizes is not above it.
-double quantile_of(Array<double> sizes, double share) {
-    const double rank = std::ceil(share * static_cast<double>(sizes.size()));
-    const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-    std::nth_element(sizes.begin(), nth, sizes.end());
-    return *nth;
-}
-
 double chosen_size(const LocalSizes& local, std::span<const StrayPoint> stray, const VoxelThinParams& params) {
     std::vector<bool> is_stray(local.sizes.size());
     for (const StrayPoint& point : stray) is_stray[local.point_of_row[point.row]] = true;
@@ -61,7 +54,7 @@ double chosen_size(const LocalSizes& local, std::span<const StrayPoint> stray, c
         throw Error("no point has {} neighbours that determine a surface: all lie near lines", params.neighbours)
             .hint("give a bin-size, or more neighbours, so that they include more than one scan line");
     const double share = params.rule == VoxelThinParams::Rule::minimum ? 0 : params.quantile.value();
-    return quantile_of(std::move(determined), share);
+    return quantile(determined, share);
 }
 
 void warn_of_undetermined(const LocalSizes& local, const VoxelThinParams& params, Context& context) {

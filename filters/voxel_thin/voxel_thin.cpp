@@ -12,6 +12,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/robust_box.hpp"
+#include "scanmill/filter/inputs.hpp"
 #include "voxel_thin/local_sizes.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/voxel_grid.hpp"
@@ -24,10 +25,7 @@ using namespace voxel;
 
 /// Throws Error for everything that is refused whatever the coordinates are.
 void require_valid(std::size_t points, const VoxelThinParams& params) {
-    if (points == 0)
-        throw Error("the cloud has no points; thinning needs at least one")
-            .hint("`scanmill info` shows what a file contains");
-    if (points > ~u32(0)) throw Error("the cloud has {} points; at most {} are supported", points, ~u32(0));
+    require_points(points, "thinning needs at least 1");
     if (params.bin_size) {
         const double size = params.bin_size->value();
         if (!(size > 0) || !std::isfinite(size)) throw Error("bin-size is {} u; it must be above 0", size);
@@ -89,19 +87,6 @@ bool are_sizes(const Column& column, std::size_t rows) {
     return true;
 }
 
-/// Appends the columns and removes older ones of the same names, with a warning.
-void add_columns(PointCloud& thinned, std::vector<Column> added, Context& context) {
-    ColumnTable columns;
-    for (const Column& column : thinned.columns) {
-        if (std::ranges::find(added, column.name(), &Column::name) == added.end())
-            columns.add(column);
-        else
-            context.warn(fmt::format("the scan's column `{}` is replaced", column.name()));
-    }
-    for (Column& column : added) columns.add(std::move(column));
-    thinned.columns = std::move(columns);
-}
-
 /// Adds `bin-size` (float64): per kept point the edge of its voxel. `edges` has one per point, or is empty where all
 /// are `grid_edge`. Where the scan has such a column of one finite number above 0 per point, its larger values stay,
 /// with a warning: points that were thinned before keep the spacing of the larger voxels.
@@ -122,7 +107,8 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
         context.warn(fmt::format("{} of {} {} thinned with larger voxels before; {} `bin-size` stays", older,
                                  count_text(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
                                  by_count(older, "its", "their")));
-    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes))).with_length_exponent(1)}, context);
+    add_column(thinned.columns, Column("bin-size", 1, Buffer<double>(std::move(sizes))).with_length_exponent(1),
+               context);
 }
 
 /// Adds `curvature-1`, `curvature-2`, `fit-error`, `local-bin-size` (float64) and `stands-for` (uint32). Columns of
@@ -141,13 +127,13 @@ void add_surface_columns(PointCloud& thinned, const LocalSizes& local, std::span
         error[i] = surface.fit_error;
         size[i] = local.sizes[point];
     }
-    add_columns(thinned,
-                {Column("curvature-1", 1, Buffer<double>(std::move(first))).with_length_exponent(-1),
-                 Column("curvature-2", 1, Buffer<double>(std::move(second))).with_length_exponent(-1),
-                 Column("fit-error", 1, Buffer<double>(std::move(error))).with_length_exponent(1),
-                 Column("local-bin-size", 1, Buffer<double>(std::move(size))).with_length_exponent(1),
-                 Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))},
-                context);
+    for (Column& column :
+         std::array{Column("curvature-1", 1, Buffer<double>(std::move(first))).with_length_exponent(-1),
+                    Column("curvature-2", 1, Buffer<double>(std::move(second))).with_length_exponent(-1),
+                    Column("fit-error", 1, Buffer<double>(std::move(error))).with_length_exponent(1),
+                    Column("local-bin-size", 1, Buffer<double>(std::move(size))).with_length_exponent(1),
+                    Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))})
+        add_column(thinned.columns, std::move(column), context);
 }
 
 /// Doubts voxels that are about as large as the scan.

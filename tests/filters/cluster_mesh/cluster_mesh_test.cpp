@@ -214,7 +214,7 @@ TEST(ClusterMesh, ClustersOfAnEarlierRun_AreReplacedWithAWarning) {
     const ClusterMeshResult result = clustered(cloud, {}, 1, &heard);
     expect_laws(cloud, result);
     EXPECT_THAT(result.mesh.vertex_columns.find("cluster-1")->values<u32>(), testing::Each(0u));
-    EXPECT_THAT(heard.warnings, testing::ElementsAre("the scan's column `cluster-1` is replaced"));
+    EXPECT_THAT(heard.warnings, testing::ElementsAre("the column 'cluster-1' of the input is replaced"));
 }
 
 TEST(ClusterMesh_MaxEdge, FollowsTheColumnBinSize_UnlessThePointsAreSparser) {

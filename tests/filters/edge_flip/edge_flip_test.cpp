@@ -325,8 +325,8 @@ TEST(EdgeFlip, KeepsVertexColumnsSharpEdgesAndFrame_DropsFaceAndEdgeColumns) {
     EXPECT_TRUE(result.mesh.edges.empty());
     EXPECT_TRUE(result.mesh.edge_columns.empty());
     EXPECT_THAT(context.warnings(),
-                ElementsAre("face columns 'patch', 'side': dropped, because flips replace triangles",
-                            "edge column 'angle': dropped, because flips replace edges"));
+                ElementsAre("face columns are dropped, because flips replace triangles: 'patch', 'side'",
+                            "edge columns are dropped, because flips replace edges: 'angle'"));
 }
 
 TEST(EdgeFlip, ReportsItsMetrics) {

@@ -327,9 +327,9 @@ TEST(NormalsRefuse, ParametersOutOfRange) {
                     HasSubstr("neighbours must be from 2 to 1000"));
     NormalsParams params;
     params.scanner = std::vector<Length>{Length(1)};
-    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("scanner needs 3 lengths"));
+    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("scanner has 1 length; it needs 3"));
     params.scanner = std::vector<Length>(3, Length(std::numeric_limits<double>::quiet_NaN()));
-    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("NaN or infinite"));
+    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("a length of scanner is nan u"));
 }
 
 TEST(NormalsRefuse, AScannerThatOrientDoesNotUse) {

@@ -177,7 +177,7 @@ TEST(OutlierRemoval, Mark_KeepsAllPointsAndMarksThoseThatWouldBeRemoved) {
     EXPECT_EQ(result.points.columns.size(), 2u);
     EXPECT_THAT(result.kept, ElementsAre(0, 1, 3, 4));
     EXPECT_EQ(result.removed, 1u);
-    EXPECT_THAT(context.warnings(), testing::Contains(HasSubstr("`outlier` is replaced")));
+    EXPECT_THAT(context.warnings(), testing::Contains(HasSubstr("'outlier' of the input is replaced")));
 }
 
 TEST(OutlierRemoval, Metrics_AreThoseOfTheResult) {

@@ -28,7 +28,7 @@ std::string refusal(const PointCloud& cloud, const OutlierRemovalParams& params 
 const PointCloud three = on_a_line({0, 1, 2});
 
 TEST(OutlierRemovalRefusals, EmptyCloud_IsRefused) {
-    EXPECT_EQ(refusal(PointCloud{}), "the cloud has no points; outlier removal needs at least one");
+    EXPECT_EQ(refusal(PointCloud{}), "the cloud has 0 points; outlier removal needs at least 1");
 }
 
 TEST(OutlierRemovalRefusals, NotFinite_IsRefusedWithCountAndRow) {

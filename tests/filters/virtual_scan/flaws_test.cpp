@@ -9,7 +9,6 @@
 
 #include "filters/virtual_scan/cases.hpp"
 #include "support/shapes.hpp"
-#include "virtual_scan/seen_points.hpp"
 #include "virtual_scan/view.hpp"
 
 namespace scanmill::test {
@@ -129,29 +128,6 @@ TEST(VirtualScanOverlap, Half_KeepsAboutHalfOfWhatWasSeenBefore) {
     const VirtualScanResult result = scan(params, 2);
     const double trials = static_cast<double>(one_view);
     EXPECT_NEAR(static_cast<double>(result.dropped), trials / 2, 5 * std::sqrt(trials) / 2);
-}
-
-TEST(VirtualScanOverlap, SeenPoints_AgreeWithBruteForce) {
-    Random random(4);
-    const double radius = 0.1;
-    scan::SeenPoints seen(Vec3(5, 5, 5), radius);
-    std::vector<Vec3> points;
-    const auto point = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    EXPECT_FALSE(seen.near(Vec3::Zero()));
-    int hits = 0;
-    for (int round = 0; round < 3; ++round) {
-        std::vector<Vec3> batch(300);
-        for (Vec3& p : batch) p = point();
-        seen.add(batch);
-        points.insert(points.end(), batch.begin(), batch.end());
-        for (int i = 0; i < 1000; ++i) {
-            const Vec3 p = point();
-            const bool expected = std::ranges::any_of(points, [&](const Vec3& q) { return (p - q).norm() < radius; });
-            ASSERT_EQ(seen.near(p), expected);
-            hits += expected;
-        }
-    }
-    EXPECT_GT(hits, 500);
 }
 
 TEST(VirtualScanViews, FibonacciSphere_IsEvenAndBalanced) {

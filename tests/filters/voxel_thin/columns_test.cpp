@@ -35,7 +35,7 @@ TEST(VoxelThinColumns, BinSize_IsAColumnOfEveryKeptPoint) {
     const VoxelThinResult twice = voxel_thin(once.points, voxels_of(3.5), context);
     EXPECT_THAT(column<double>(twice, "bin-size"), ElementsAre(3.5, 3.5));
     EXPECT_EQ(twice.points.columns.size(), 1u);
-    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("`bin-size`")));
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("'bin-size'")));
 }
 
 TEST(VoxelThinColumns, BinSize_OfEarlierLargerVoxelsStays) {

@@ -24,7 +24,7 @@ std::string refusal(const PointCloud& cloud, const VoxelThinParams& params) {
 }
 
 TEST(VoxelThinRefusals, EmptyCloud_IsRefused) {
-    EXPECT_THAT(refusal(PointCloud{}, voxels_of(1)), HasSubstr("no points"));
+    EXPECT_THAT(refusal(PointCloud{}, voxels_of(1)), HasSubstr("0 points"));
 }
 
 TEST(VoxelThinRefusals, NotANumber_IsRefusedWithItsRow) {
