@@ -14,6 +14,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 
 namespace scanmill {
@@ -290,8 +291,9 @@ Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<V
         if (const double cosine = cosine_of(up); std::abs(cosine) >= least) return cosine > 0 ? normal : Vec3(-normal);
     }
     const auto& [name, up] = directions.front();
+    const double angle = angle_between(normal, up);
     throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up", name,
-                std::acos(std::min(1.0, std::abs(cosine_of(up)))) * 180 / std::numbers::pi, port)
+                std::min(angle, std::numbers::pi - angle) * 180 / std::numbers::pi, port)
         .hint("give `up`, a direction that points away from the plate's upper side");
 }
 

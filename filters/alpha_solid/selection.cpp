@@ -7,6 +7,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "alpha_solid/incremental_solid.hpp"
@@ -42,9 +43,10 @@ double number(std::string_view text) {
 std::string text_within(const AlphaInterval& interval, double alpha) {
     const bool is_above = interval.least > alpha;
     const double end = is_above ? interval.least : interval.largest;
-    std::string text;
+    std::string text = fmt::format("{:.16e}", end);
+    const int exponent = std::atoi(text.c_str() + text.find('e') + 1);
     for (int digits = 4; digits <= 17; ++digits) {
-        const double last_place = std::pow(10.0, std::floor(std::log10(end)) + 1 - digits);
+        const double last_place = number(fmt::format("1e{}", exponent + 1 - digits));
         for (double candidate : {end, is_above ? end + last_place : end - last_place}) {
             text = fmt::format("{:.{}g}", candidate, digits);
             if (const double value = number(text); value >= interval.least && value <= interval.largest) return text;

@@ -15,6 +15,7 @@
 #include "cluster_mesh/insertion_order.hpp"
 #include "cluster_mesh/triangulation.hpp"
 #include "edge_flip/edge_flip.hpp"
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
@@ -37,7 +38,8 @@ using namespace clustering;
 using growing::DistinctPoints;
 using growing::Neighbourhoods;
 
-constexpr double degree = std::numbers::pi / 180;
+double sine(double degrees) { return elementary::turn_of(Angle::degrees(degrees).in_radians()).sine; }
+double cosine(double degrees) { return elementary::turn_of(Angle::degrees(degrees).in_radians()).cosine; }
 /// More points than these within max_edge of a point are refused: max_edge is far too large.
 constexpr std::size_t most_near = 1000;
 
@@ -46,13 +48,11 @@ constexpr std::size_t most_near = 1000;
 /// sheets apart and boundaries open. So do the short edges of the insertion: the next sheet is farther away than the
 /// next point of the same one. Of 0.5, 0.6, 2/3, 0.7, 0.75, 0.85 and 1 only two thirds joins sheets 1.5 spacings apart
 /// at their borders alone; on 26 thinned models it leaves as many loops as 1, and fewer unused points.
-const std::array<Limits, 5> passes{
-    {{2.0 / 3, std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
-     {1, std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
-     {1, std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), true, true, true},
-     {1, std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), false, true,
-      true},
-     {1, std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false, true}}};
+const std::array<Limits, 5> passes{{{2.0 / 3, sine(5), 0, cosine(60), cosine(85), true, true, false},
+                                    {1, sine(5), 0, cosine(60), cosine(85), true, true, false},
+                                    {1, sine(3), cosine(105), cosine(75), cosine(110), true, true, true},
+                                    {1, sine(3), cosine(105), cosine(75), cosine(110), false, true, true},
+                                    {1, sine(0.5), cosine(120), cosine(80), -1, false, false, true}}};
 
 /// Inserts all points, and completes the mesh.
 class Insertion {
@@ -417,9 +417,10 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
                     std::move(radii), std::move(density), false);
     context.progress(0.3);
 
-    const WinnerLimits winner{std::cos(params.max_normal_angle.in_radians()) - 1e-9,
-                              std::cos(params.neighbour_angle.in_radians()) + 1e-9,
-                              std::cos(params.overlap_angle.in_radians()), std::tan(params.overlap_angle.in_radians())};
+    const elementary::Turn overlap = elementary::turn_of(params.overlap_angle.in_radians());
+    const WinnerLimits winner{elementary::turn_of(params.max_normal_angle.in_radians()).cosine - 1e-9,
+                              elementary::turn_of(params.neighbour_angle.in_radians()).cosine + 1e-9, overlap.cosine,
+                              overlap.sine / overlap.cosine};
     Insertion insertion(surface, result.max_edge, params.max_edge.has_value(), up, winner, context);
     insertion.insert_all(order);
     context.progress(0.7);

@@ -17,8 +17,8 @@ using growing::PointState;
 
 namespace {
 
-/// Outside angles at a boundary vertex are closed below 170 degrees.
-const double widest_corner_cosine = std::cos(170 * 3.14159265358979323846 / 180);
+/// Outside angles at a boundary vertex are closed below this: 170 degrees.
+constexpr double widest_corner_cosine = -0.984807753012208;
 
 /// A point over a triangle lies on one of its edges if it makes a triangle with a smaller share of the area there.
 constexpr double least_share = 0.02;

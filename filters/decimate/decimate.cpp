@@ -8,6 +8,7 @@
 #include "decimate/corner_normals.hpp"
 #include "decimate/decimator.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
@@ -64,8 +65,8 @@ Limits limits_for(const DecimateParams& params, double share, double rounding) {
     limits.error.inside =
         params.inside ? length_of("inside", *params.inside) : length_of("max-error", params.max_error);
     for (double* error : {&limits.error.outside, &limits.error.inside}) *error = *error * share + rounding;
-    limits.normal_cosine = std::cos(params.normal_deviation.in_radians()) - 1e-9;
-    limits.angle_sine = std::sin(params.min_angle.in_radians());
+    limits.normal_cosine = elementary::turn_of(params.normal_deviation.in_radians()).cosine - 1e-9;
+    limits.angle_sine = elementary::turn_of(params.min_angle.in_radians()).sine;
     limits.flat_angle_sine = std::min(limits.angle_sine, flat_angle_sine);
     limits.max_valence = params.max_valence;
     return limits;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
@@ -26,13 +27,6 @@ constexpr double straight = 1e-6;  // radians below π at which two angles form 
 constexpr double no_height = 1e-9;
 /// Of cosines of dihedral deviations, and of distances to lengths: covers rounding in planes.
 constexpr double cosine_rounding = 1e-12, distance_rounding = 1e-9;
-
-/// Series, because the C library's cosine depends on the processor. Pre: 0 ≤ radians ≤ π / 3.
-double cosine_of(double radians) {
-    double term = 1, sum = 1;
-    for (int i = 2; i <= 20; i += 2) sum += term *= -radians * radians / ((i - 1) * i);
-    return sum;
-}
 
 /// The direction of an angle in [0, π]: ratios of its cosine and sine.
 struct Direction {
@@ -130,7 +124,7 @@ public:
         : mesh_(mesh, std::move(opposite)),
           positions_(mesh.positions.begin(), mesh.positions.end()),
           criterion_(params.criterion),
-          keep_cosine_(cosine_of(params.keep_angle.in_radians())),
+          keep_cosine_(elementary::turn_of(params.keep_angle.in_radians()).cosine),
           deviation_(params.deviation.value()),
           flags_(3 * mesh.triangles.size(), 0),
           queue_(3 * mesh.triangles.size()) {

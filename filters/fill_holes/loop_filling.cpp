@@ -5,10 +5,25 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <cmath>
 #include <functional>
 #include <iterator>
 
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+
+namespace CGAL::CommonKernelFunctors {
+
+/// CGAL's own formula, whose arctangent depends on the processor. Triangulations are chosen by these angles.
+template <>
+inline double Compute_approximate_dihedral_angle_3<Epick>::operator()(const Point_3& a, const Point_3& b,
+                                                                      const Point_3& c, const Point_3& d) const {
+    const auto ab = b - a, ac = c - a, ad = d - a, across = cross_product(ab, ad);
+    const double cosine = cross_product(ab, ac) * across, sine = std::sqrt(ab.squared_length()) * (ac * across);
+    return std::copysign(scanmill::angle_of(cosine, std::abs(sine)), sine) * 180 / CGAL_PI;
+}
+
+}  // namespace CGAL::CommonKernelFunctors
 
 namespace scanmill {
 

@@ -13,6 +13,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
@@ -153,11 +154,13 @@ Plane with_upper_side(Plane plane, const PointCloud& cloud, std::span<const u32>
     const bool has_normals = by_normals != Vec3::Zero();
     const double cosine = plane.normal.dot(has_normals ? by_normals : given);
     constexpr double least = 0.5;
-    if (!(std::abs(cosine) >= least))
+    if (!(std::abs(cosine) >= least)) {
+        const double angle = angle_between(plane.normal, has_normals ? by_normals : given);
         throw Error("{} is {:.3g} deg off the normal of the plate; at most 60 deg decide which side is up",
                     has_normals ? "the mean normal of the plate's points" : "`up`",
-                    std::acos(std::min(1.0, std::abs(cosine))) * 180 / std::numbers::pi)
+                    std::min(angle, std::numbers::pi - angle) * 180 / std::numbers::pi)
             .hint("give `up`, a direction that points away from the plate's upper side");
+    }
     if (cosine < 0) plane.normal = -plane.normal;
     return plane;
 }

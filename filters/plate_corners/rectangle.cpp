@@ -14,6 +14,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/cell_grid.hpp"
 
 namespace scanmill::plate {
@@ -217,10 +218,11 @@ Corners of_size(const Corners& found, double first, double second) {
 
 void require_right_angles(const std::array<Side, 4>& sides) {
     for (std::size_t i = 0; i < 4; ++i) {
-        const double cosine = sides[i].direction.dot(sides[(i + 1) % 4].direction);
+        const Vec2 &one = sides[i].direction, &next = sides[(i + 1) % 4].direction;
+        const double cosine = one.dot(next);
         if (!(std::abs(cosine) <= largest_skew_cosine))
             throw Error("two sides of the plane meet at {:.4g} deg; 90 deg within 5 deg are needed",
-                        std::acos(std::clamp(-cosine, -1.0, 1.0)) * 180 / std::numbers::pi)
+                        angle_of(-cosine, std::abs(cross(one, next))) * 180 / std::numbers::pi)
                 .hint("crop the scan to the plate");
     }
 }

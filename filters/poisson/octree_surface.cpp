@@ -21,13 +21,7 @@ inline int fprintf(Nowhere, const char*, ...) { return 0; }
 
 using scanmill::elementary::log;
 using scanmill::elementary::log2;
-inline double pow(double base, double power) {
-    const double exponent = power * log2(base), whole = std::nearbyint(exponent);
-    const double rest = 0.69314718055994531 * (exponent - whole);
-    double sum = 1;  // of rest^k / k!
-    for (int k = 18; k > 0; --k) sum = 1 + sum * rest / k;
-    return std::ldexp(sum, static_cast<int>(whole));
-}
+using scanmill::elementary::pow;
 
 }  // namespace pcl::poisson
 

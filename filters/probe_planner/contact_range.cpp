@@ -26,26 +26,6 @@ AngleRange range_between(double low, double high) {
 
 }  // namespace
 
-Turn turn_of(double angle) {
-    // Quarter turns in two parts, so that the remainder keeps its digits.
-    constexpr double quarter = 1.5707963267948966, quarter_rest = 6.123233995736766e-17;
-    const double quarters = std::floor(angle / quarter + 0.5);
-    const double x = (angle - quarters * quarter) - quarters * quarter_rest, square = x * x;
-    double sine = 0, cosine = 0;  // Taylor series; the terms left out are below 1e-19 for |x| <= pi/4
-    for (int degree = 19; degree > 1; degree -= 2) {
-        sine = (1 - sine) * square / (degree * (degree - 1));
-        cosine = (1 - cosine) * square / ((degree - 1) * (degree - 2 > 0 ? degree - 2 : 1));
-    }
-    sine = x * (1 - sine);
-    cosine = 1 - cosine;
-    switch (static_cast<int>(quarters - 4 * std::floor(quarters / 4))) {
-        case 0: return {cosine, sine};
-        case 1: return {-sine, cosine};
-        case 2: return {-cosine, -sine};
-        default: return {sine, -cosine};
-    }
-}
-
 double arc_cosine(double cosine) { return angle_of(cosine, std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)))); }
 
 bool is_empty(const AngleRange& range) { return !(range.min <= range.max); }

@@ -16,17 +16,15 @@
 
 #include <Eigen/Core>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/data/probes.hpp"
 
 namespace scanmill::probing {
 
 using Vec2 = Eigen::Vector2d;
 
-struct Turn {
-    double cosine, sine;
-};
-/// Cosine and sine of an angle of at most a few turns, to about 1e-16.
-Turn turn_of(double angle);
+using elementary::Turn;
+using elementary::turn_of;
 /// In [0, pi]. Pre: |cosine| <= 1.
 double arc_cosine(double cosine);
 

@@ -113,8 +113,8 @@ TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
 
 /// Throws Error if the mesh is closed and encloses a negative volume.
 void require_outward(const TriangleMesh& mesh) {
-    const double volume = signed_volume(mesh.positions, mesh.triangles);
-    if (volume >= -rounding * std::pow(surface_box(mesh).diagonal(), 3) || !topology(mesh).closed) return;
+    const double volume = signed_volume(mesh.positions, mesh.triangles), diagonal = surface_box(mesh).diagonal();
+    if (volume >= -rounding * diagonal * diagonal * diagonal || !topology(mesh).closed) return;
     throw Error("the mesh is inside out: it encloses {:.4g} {}3, so that every convex edge is concave", volume,
                 symbol(mesh.frame.unit))
         .hint("`repair` turns a closed mesh outwards; find the features on its result");

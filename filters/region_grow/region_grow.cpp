@@ -13,6 +13,7 @@
 #include "region_grow/growth.hpp"
 #include "region_grow/patch_edges.hpp"
 #include "region_grow/search_radii.hpp"
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
@@ -83,16 +84,16 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
                                            {2.0 / 3, 7.0 / 6, 75, 110, 1.1},
                                            {1.0 / 3, 4.0 / 3, 80, 180, 1.15},
                                            {1.0 / 30, 4.0 / 3, 80, 180, 1.15}}};
-    constexpr double degree = 3.14159265358979323846 / 180;
     std::vector<Limits> limits;
+    const auto cosine = [](double radians) { return elementary::turn_of(std::min(std::numbers::pi, radians)).cosine; };
     const auto normal_cosine = [&](const Round& round) {
-        const double angle = params.max_normal_angle.in_radians() * round.normal_angle_factor;
-        return std::cos(std::min(180 * degree, angle)) - 1e-9;
+        return cosine(params.max_normal_angle.in_radians() * round.normal_angle_factor) - 1e-9;
     };
     for (const Round& round : rounds) {
-        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle_factor) * (1 - 1e-12),
-                          normal_cosine(round), normal_cosine(rounds.back()), std::cos(round.point_angle * degree),
-                          std::cos(round.sharp_point_angle * degree), round.radius_factor,
+        const double least_angle = params.min_angle.in_radians() * round.angle_factor;
+        limits.push_back({elementary::turn_of(least_angle).sine * (1 - 1e-12), normal_cosine(round),
+                          normal_cosine(rounds.back()), cosine(Angle::degrees(round.point_angle).in_radians()),
+                          cosine(Angle::degrees(round.sharp_point_angle).in_radians()), round.radius_factor,
                           static_cast<Pass>(limits.size())});
     }
     return limits;

@@ -190,8 +190,8 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
             const double s = candidate.score;
             // A better point is at most this far from the nearer end of the edge: at the top of the circle's arc, or of
             // the circle around the middle.
-            const double top = score_ == Score::midpoint ? half * (1 + std::sqrt(s))
-                                                         : half * std::hypot(1.0, s + std::sqrt(1 + s * s));
+            const double sum = s + std::sqrt(1 + s * s);
+            const double top = half * (score_ == Score::midpoint ? 1 + std::sqrt(s) : std::sqrt(1 + sum * sum));
             result.uncovered = top * top > reach;
         }
         const double usual =

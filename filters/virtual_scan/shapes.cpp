@@ -170,7 +170,7 @@ void require_apart(const Vec3& size, double large_radius, double small_radius) {
                     size.y())
             .hint(fmt::format("its radius must be below {} u", side / 2));
     const double to_side = (0.5 - eccentricity) * side;
-    const double between = eccentricity * std::hypot(size.x(), size.y()) - large_radius;
+    const double between = eccentricity * std::sqrt(size.x() * size.x() + size.y() * size.y()) - large_radius;
     const double room = std::min(to_side, between);
     if (!(small_radius < room))
         throw Error("the small holes of radius {} u touch the large one or the sides of the block of {} x {} u",

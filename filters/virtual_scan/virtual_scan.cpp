@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
@@ -104,18 +105,10 @@ struct Samples {
     }
 };
 
-/// By its series, because the result of the C library differs in the last bit between processors, and a face may lie
-/// exactly at the limit. Pre: 0 ≤ angle ≤ π/2.
-double cosine(double angle) {
-    double value = 1;
-    for (int degree = 24; degree > 0; degree -= 2) value = 1 - value * angle * angle / (degree * (degree - 1));
-    return value;
-}
-
 /// The hits within `max_angle`, view by view.
 std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const std::vector<scan::View>& views,
                                                Angle max_angle, Context& context) {
-    const double least_cosine = max_angle.in_degrees() < 90 ? cosine(max_angle.in_radians()) : 0;
+    const double least_cosine = max_angle.in_degrees() < 90 ? elementary::turn_of(max_angle.in_radians()).cosine : 0;
     std::vector<std::vector<scan::Hit>> returns(views.size());
     for_each_chunk(context.threads(), views.size(), 1, [&](std::size_t number, std::size_t) {
         context.check_cancelled();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/writing.hpp"
 
@@ -56,7 +57,7 @@ std::array<std::uint16_t, 256> linear_fractions() {
     std::array<std::uint16_t, 256> table;
     for (std::size_t byte = 0; byte < table.size(); ++byte) {
         const double c = static_cast<double>(byte) / 255;
-        const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+        const double linear = c <= 0.04045 ? c / 12.92 : elementary::pow((c + 0.055) / 1.055, 2.4);
         table[byte] = static_cast<std::uint16_t>(std::lround(65535 * linear));
     }
     return table;

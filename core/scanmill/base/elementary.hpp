@@ -1,31 +1,76 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Elementary functions whose bits do not depend on the processor, as those of the C library do: of +, -, *, / and
-/// powers of two, which IEEE 754 rounds in exactly one way. Angles: see geometry/spatial/angle.hpp.
+/// Elementary functions whose bits depend neither on the processor nor on the C library.
+///
+/// The C library chooses between variants of sin, exp and the like by the processor, and their last bits differ. These
+/// functions consist of +, -, *, / and powers of two, which IEEE 754 rounds in exactly one way. (All of Scanmill is
+/// compiled with -ffp-contract=off.) Arctangents: geometry/spatial/angle.hpp.
 
 #include <cmath>
+#include <numbers>
 
 namespace scanmill::elementary {
 
-/// Pre: x is finite and above 0. Error: a few units in the last place.
-inline double log2(double x) {
+/// log x = exponent log 2 + 2 ratio sum / ln(base), with the series of the inverse hyperbolic tangent.
+struct LogarithmParts {
+    int exponent;
+    double ratio, sum;
+};
+inline LogarithmParts logarithm_parts(double x) {
     int exponent;
     double mantissa = std::frexp(x, &exponent);
-    if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
+    if (mantissa < 1 / std::numbers::sqrt2) mantissa *= 2, --exponent;
     const double ratio = (mantissa - 1) / (mantissa + 1), square = ratio * ratio;
     double sum = 0;  // of ratio^2k / (2k + 1)
     for (int power = 23; power > 0; power -= 2) sum = sum * square + 1.0 / power;
-    return exponent + 2.8853900817779268 * ratio * sum;  // 2 / ln 2
+    return {exponent, ratio, sum};
 }
 
-/// The same for the natural logarithm.
-inline double log(double x) { return 0.69314718055994531 * log2(x); }
+/// Pre: x is finite and above 0. Error: 4 units in the last place, or 2^-53. Powers of two are exact.
+inline double log2(double x) {
+    const auto [exponent, ratio, sum] = logarithm_parts(x);
+    return exponent + 2 / std::numbers::ln2 * ratio * sum;
+}
 
-/// Pre: x is from 0 to π / 4. Error: a few units in the last place.
-inline double tan(double x) {
-    double fraction = 0;  // Lambert's: x² / (3 - x² / (5 - …
-    for (int odd = 19; odd > 1; odd -= 2) fraction = x * x / (odd - fraction);
-    return x / (1 - fraction);
+/// The same for the natural logarithm, but for the powers of two.
+inline double log(double x) {
+    const auto [exponent, ratio, sum] = logarithm_parts(x);
+    return exponent * std::numbers::ln2 + 2 * ratio * sum;
+}
+
+/// Pre: x is finite and above 0; 2^-1022 ≤ x^power < 2^1023.
+/// Error: 4 + 4 |log2 x^power| units in the last place.
+inline double pow(double x, double power) {
+    const double exponent = power * log2(x), whole = std::nearbyint(exponent);
+    const double rest = std::numbers::ln2 * (exponent - whole);
+    double sum = 1;  // of rest^k / k!
+    for (int k = 18; k > 0; --k) sum = 1 + sum * rest / k;
+    return std::ldexp(sum, static_cast<int>(whole));
+}
+
+struct Turn {
+    double cosine, sine;
+};
+/// Cosine and sine of an angle in radians. Pre: |angle| ≤ 3.9, a quarter turn beyond π. Error: 2 units in the last
+/// place; 0 is exact.
+inline Turn turn_of(double angle) {
+    // Quarter turns in two parts, so that the remainder keeps its digits.
+    constexpr double quarter = 1.5707963267948966, quarter_rest = 6.123233995736766e-17;
+    const double quarters = std::floor(angle / quarter + 0.5);
+    const double x = (angle - quarters * quarter) - quarters * quarter_rest, square = x * x;
+    double sine = 0, cosine = 0;  // Taylor series; the terms left out are below 1e-19 for |x| ≤ π/4
+    for (int degree = 19; degree > 1; degree -= 2) {
+        sine = (1 - sine) * square / (degree * (degree - 1));
+        cosine = (1 - cosine) * square / ((degree - 1) * (degree - 2 > 0 ? degree - 2 : 1));
+    }
+    sine = x * (1 - sine);
+    cosine = 1 - cosine;
+    switch (static_cast<int>(quarters - 4 * std::floor(quarters / 4))) {
+        case 0: return {cosine, sine};
+        case 1: return {-sine, cosine};
+        case 2: return {-cosine, -sine};
+        default: return {sine, -cosine};
+    }
 }
 
 }  // namespace scanmill::elementary

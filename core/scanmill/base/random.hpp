@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
+
+#include "scanmill/base/elementary.hpp"
 
 namespace scanmill {
 
@@ -32,25 +33,11 @@ public:
         for (;;) {
             const double x = uniform(-1, 1), y = uniform(-1, 1);
             const double square = x * x + y * y;
-            if (square > 0 && square < 1) return x * std::sqrt(-2 * logarithm(square) / square);
+            if (square > 0 && square < 1) return x * std::sqrt(-2 * elementary::log(square) / square);
         }
     }
 
 private:
-    /// The C library's log rounds differently on processors with fused multiply-add; this does not.
-    /// Pre: value > 0. Series of the inverse hyperbolic tangent; error below 1e-15 of the result or 1e-16.
-    static double logarithm(double value) {
-        int exponent = 0;
-        double mantissa = std::frexp(value, &exponent);
-        if (mantissa < 1 / std::numbers::sqrt2) {
-            mantissa *= 2;
-            --exponent;
-        }
-        const double s = (mantissa - 1) / (mantissa + 1);
-        double sum = 0;
-        for (int degree = 23; degree > 0; degree -= 2) sum = sum * (s * s) + 1.0 / degree;
-        return exponent * std::numbers::ln2 + 2 * s * sum;
-    }
     static std::uint64_t mix(std::uint64_t z) {
         z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;

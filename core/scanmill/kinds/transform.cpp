@@ -24,7 +24,7 @@ void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
         throw Error("{}: the matrix is a reflection: its determinant is {:.6g}; a rotation's is 1", place, determinant)
             .hint("an axis points the wrong way");
     if (off <= most) return;
-    const double scale = std::cbrt(matrix.determinant());
+    const double scale = std::copysign(std::sqrt(matrix.squaredNorm() / 3), matrix.determinant());
     const Eigen::Matrix3d unscaled = matrix / scale;
     if ((unscaled * unscaled.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= most)
         throw Error("{}: the matrix scales by {:.6g}; a rotation's axes have the length 1", place, scale)

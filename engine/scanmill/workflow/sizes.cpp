@@ -116,7 +116,7 @@ double resolved_length_power(const Length& written, int power, const LengthScale
                               power))
             .remedy(Remedy::declare_unit);
     const double unit = Length(1, written.in()).resolved(scale).value();
-    return written.amount() * std::pow(unit, power);
+    return written.amount() * (power == 2 ? unit * unit : unit * unit * unit);
 }
 
 std::string_view length_power_examples(int power) {

@@ -212,16 +212,5 @@ TEST(EdgeFirst, ShareOfPositionsInTheDisc_IsTheExactOne) {
     }
 }
 
-TEST(TurnOf, IsTheCosineAndTheSine) {
-    Random random(6);
-    for (int i = 0; i < 100000; ++i) {
-        const double angle = random.uniform(-7, 7);
-        EXPECT_NEAR(turn_of(angle).cosine, std::cos(angle), 3e-16);
-        EXPECT_NEAR(turn_of(angle).sine, std::sin(angle), 3e-16);
-    }
-    EXPECT_EQ(turn_of(0).cosine, 1);
-    EXPECT_EQ(turn_of(0).sine, 0);
-}
-
 }  // namespace
 }  // namespace scanmill::probing

@@ -45,7 +45,9 @@ std::optional<u8> byte_of_fraction(std::string_view spelling, double value) {
         constexpr std::size_t least_digits = 3;
         const std::size_t digits = digits_after_point(spelling);
         if (digits < least_digits) return std::nullopt;
-        if (error > 0.5 * std::pow(10.0, -static_cast<double>(digits)) + single_precision) return std::nullopt;
+        double scale = 1;  // exact up to 22 digits
+        for (std::size_t i = 0; i < digits; ++i) scale *= 10;
+        if (error > 0.5 / scale + single_precision) return std::nullopt;
     }
     return static_cast<u8>(byte);
 }

@@ -300,7 +300,7 @@ bool are_unit_normals(std::span<const double> x, std::span<const double> y, std:
     constexpr double tolerance = 0.1;
     std::size_t unknown = 0;
     for (std::size_t row = 0; row < x.size(); ++row) {
-        const double length = std::hypot(x[row], y[row], z[row]);
+        const double length = std::sqrt(x[row] * x[row] + y[row] * y[row] + z[row] * z[row]);
         if (std::isnan(length))
             ++unknown;
         else if (std::abs(length - 1) > tolerance && length != 0)

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/hole_triangulation.hpp"
 
@@ -161,7 +162,7 @@ public:
     NarrowHoleCloser(Surface& surface, const NarrowHoleLimits& limits, const Execution& execution)
         : surface_(surface),
           narrow_(limits),
-          dihedral_cosine_(std::max(tip_cosine, std::cos(limits.largest_dihedral) - 1e-9)),
+          dihedral_cosine_(std::max(tip_cosine, elementary::turn_of(limits.largest_dihedral).cosine - 1e-9)),
           execution_(execution) {}
 
     /// Corners counter-clockwise as the triangles of a lid.

@@ -147,7 +147,8 @@ struct Limits {
         // tan²(angle / 2); those by noise to (n - 3) σ² with a standard deviation of √(2 (n - 3)) σ². Both sums keep to
         // their side of the middle by z of these.
         constexpr double of_a_crease = 1 - 64 / (9 * std::numbers::pi * std::numbers::pi);
-        const double slope = elementary::tan(std::min(angle, std::numbers::pi / 2) / 2);
+        const auto [cosine, sine] = elementary::turn_of(std::min(angle, std::numbers::pi / 2) / 2);
+        const double slope = sine / cosine;
         visible = 2 * z * std::numbers::sqrt2 * variance / (of_a_crease * slope * slope);
     }
 };
