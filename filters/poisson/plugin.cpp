@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = PoissonParams;
-    return Declare<P>("poisson", 3)
+    return Declare<P>("poisson", 4)
         .summary("Makes a surface of points with normals, also where points are missing.")
         .source("Kazhdan, Hoppe 2013, Screened Poisson surface reconstruction; by PCL")
         .ties("Of vertices of equal density the lower row is removed first. A vertex at exactly `max-distance` stays.")

@@ -25,12 +25,15 @@ struct Step {
 
 /// Every filter at least once, on small noisy scans.
 const std::vector<Step> steps{
+    {"plate", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.1 u], views: [0, 0, 1], noise: 0.002 u"},
+    {"machine", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.2 u], views: [0, 0, 1], noise: 0.001 u"},
     {"scan", "virtual-scan", "shape: l-block, resolution: 0.05 u, noise: 0.002 u, outliers: 1 %"},
     {"other-scan", "virtual-scan", "shape: l-block, views: [5], resolution: 0.07 u, noise: 0.004 u"},
     {"merged", "merge", "within: 0.01 u", "points: [scan, other-scan]"},
     {"clean", "outlier-removal", "", "points: merged"},
     {"cropped", "crop", "centre: [0 u, 0 u, 0 u], radius: 3 u", "points: clean"},
-    {"thinned", "voxel-thin", "", "points: cropped"},
+    {"finely-thinned", "voxel-thin", "", "points: cropped"},
+    {"thinned", "voxel-thin", "bin-size: 0.08 u", "points: cropped"},
     {"smoothed", "smooth", "", "points: thinned"},
     {"with-normals", "normals", "", "points: smoothed"},
     {"clustered", "cluster-mesh", "", "points: thinned"},
@@ -48,8 +51,6 @@ const std::vector<Step> steps{
     {"surface", "a-patch", "", "mesh: reduced, points: thinned"},
     {"fine", "tessellate", "", "patches: surface"},
     {"distances", "patch-distance", "", "patches: surface, points: thinned"},
-    {"plate", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.1 u], views: [0, 0, 1], noise: 0.002 u"},
-    {"machine", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.2 u], views: [0, 0, 1], noise: 0.001 u"},
     {"corners", "plate-corners", "", "points: plate"},
     {"machine-corners", "plate-corners", "", "points: machine"},
     {"motion", "align", "", "source: corners, target: machine-corners, part: grown"},
@@ -99,7 +100,7 @@ std::map<std::string, std::string> results(const std::string& workflow, const ch
         found[step.at("step")] = step.value("metrics", json()).dump();
     }
     for (const json& output : report.at("cells").at(0).at("outputs"))
-        found[output.at("file")] = output.value("sha256", "not written");
+        found[std::filesystem::path(output.at("file")).filename()] = output.value("sha256", "not written");
     return found;
 }
 
