@@ -9,9 +9,12 @@
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
 #include <CGAL/Spatial_lock_grid_3.h>
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/scalable_allocator.h>
 
 #include <algorithm>
 #include <atomic>
@@ -23,7 +26,6 @@
 #include <vector>
 
 #include "delaunay/canonical_cells.hpp"
-#include "delaunay/cell_containers.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 
@@ -34,9 +36,25 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using PointRow = std::pair<Kernel::Point_3, u32>;
 
+/// The number of a finite cell, or TetMesh::outside_hull.
+struct CellNumber {
+    u32 number;
+};
+
+/// The smallest of the input rows at a vertex's position.
+struct FirstRow {
+    static constexpr u32 none = 0xffff'ffff;
+    u32 row = none;
+};
+
+template <class Base>
+using NumberedCellBase = CGAL::Triangulation_cell_base_with_info_3<CellNumber, Kernel, Base>;
+template <class Base>
+using RowVertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel, Base>;
+
 // Without weights.
-using VertexBase = RowVertexBase<Kernel, CGAL::Triangulation_vertex_base_3<Kernel>>;
-using CellBase = NumberedCellBase<Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using VertexBase = RowVertexBase<CGAL::Triangulation_vertex_base_3<Kernel>>;
+using CellBase = NumberedCellBase<CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 template <class Concurrency>
 using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, Concurrency>;
 /// A grid over space: threads lock its boxes before they change cells there. A failed attempt to lock returns at once;
@@ -50,22 +68,10 @@ using LoneTriangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure<C
 // With weights. Points that become hidden are dropped: the hidden points are those in no cell in the end.
 using WeightedCellBase = CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
                                                                  CGAL::Discard_hidden_points>;
-using WeightedCell = NumberedCellBase<Kernel, WeightedCellBase>;
-using WeightedVertex = RowVertexBase<Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
+using WeightedCell = NumberedCellBase<WeightedCellBase>;
+using WeightedVertex = RowVertexBase<CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
 using Weighted =
     CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<WeightedVertex, WeightedCell>>;
-
-// The code compiles with CGAL's own containers too, but those keep their memory: see cell_containers.hpp.
-static_assert(std::is_base_of_v<SharedContainer<SharedTriangulation::Cell>,
-                                SharedTriangulation::Triangulation_data_structure::Cell_range>);
-static_assert(std::is_base_of_v<SharedContainer<SharedTriangulation::Vertex>,
-                                SharedTriangulation::Triangulation_data_structure::Vertex_range>);
-static_assert(std::is_base_of_v<LoneContainer<LoneTriangulation::Cell>,
-                                LoneTriangulation::Triangulation_data_structure::Cell_range>);
-static_assert(std::is_base_of_v<LoneContainer<LoneTriangulation::Vertex>,
-                                LoneTriangulation::Triangulation_data_structure::Vertex_range>);
-static_assert(std::is_base_of_v<LoneContainer<Weighted::Cell>, Weighted::Triangulation_data_structure::Cell_range>);
-static_assert(std::is_base_of_v<LoneContainer<Weighted::Vertex>, Weighted::Triangulation_data_structure::Vertex_range>);
 
 /// The points and their rows in the order of insertion.
 std::vector<PointRow> insertion_order(std::span<const Vec3> positions, unsigned threads) {
@@ -321,8 +327,11 @@ RawTriangulation triangulate_in(std::span<const Vec3> positions, Context& contex
 
 RawTriangulation triangulate(std::span<const Vec3> positions, Context& context) {
     const bool is_shared = context.threads() > 1 && positions.size() >= least_for_threads;
-    return is_shared ? triangulate_in<SharedTriangulation>(positions, context)
-                     : triangulate_in<LoneTriangulation>(positions, context);
+    if (!is_shared) return triangulate_in<LoneTriangulation>(positions, context);
+    RawTriangulation raw = triangulate_in<SharedTriangulation>(positions, context);
+    // The allocator of CGAL's concurrent containers would keep their memory.
+    ::scalable_allocation_command(TBBMALLOC_CLEAN_ALL_BUFFERS, nullptr);
+    return raw;
 }
 
 RawTriangulation triangulate_weighted(std::span<const Vec3> positions, std::span<const double> weights,
