@@ -75,9 +75,8 @@ Format obj_format();
 /// the columns, in any order; without one the first three are x, y, z. text_columns() describes how the others become
 /// columns. Every line must have as many numbers as the first.
 ///
-/// A first line with a single whole number is the number of points. When further such lines follow, each after as many
-/// points as the one before declares, the blocks are scans: one cloud with a column `scan` (uint32) from 0. A count N
-/// before 2 N rows of three numbers means N points and then their normals.
+/// A first line with a single whole number is the number of points. A further such line is an Error, and so are normals
+/// in rows after the points.
 ///
 /// In Hoppe's text of points, rows begin with a letter: "p 0.1 0.2 0.3" is a point. Rows with other letters, such as d,
 /// s and g for its colours, are left out.

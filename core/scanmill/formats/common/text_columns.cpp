@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <ranges>
-#include <set>
 
 namespace scanmill {
 
@@ -14,53 +13,25 @@ constexpr std::size_t most_columns = 1000;
 
 using Indices = std::vector<std::size_t>;
 
-bool is_quote(char c) { return c == '"' || c == '\''; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// Calls `action` with the position of every character outside quotes until it returns true.
-template <class Action>
-void outside_quotes(std::string_view line, Action&& action) {
-    char open = '\0';
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (open != '\0') {
-            if (line[i] == open) open = '\0';
-        } else if (is_quote(line[i])) {
-            open = line[i];
-        } else if (action(i)) {
-            return;
-        }
-    }
-}
-
-char separator_of(std::string_view line) {
-    for (const char candidate : {';', ',', '|', '\t'}) {
-        bool found = false;
-        outside_quotes(line, [&](std::size_t i) { return found = line[i] == candidate; });
-        if (found) return candidate;
-    }
-    return ' ';
-}
-
-/// The names in a line, in order; at most most_columns + 1.
+/// The names in a line, in order.
 std::vector<std::string> split_names(std::string_view line) {
     line = trimmed(line);
-    const char separator = separator_of(line);
+    char separator = ' ';
+    for (const char candidate : {'\t', '|', ',', ';'})
+        if (line.find(candidate) != line.npos) separator = candidate;
     std::vector<std::string> names;
-    const auto add = [&](std::string_view name) {
-        name = trimmed(name);
-        if (name.size() >= 2 && is_quote(name.front()) && name.back() == name.front())
+    while (!line.empty()) {
+        const std::size_t end = std::min(line.find(separator), line.size());
+        std::string_view name = trimmed(line.substr(0, end));
+        if (name.size() >= 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front())
             name = trimmed(name.substr(1, name.size() - 2));
-        names.push_back(name.empty() ? "c" + std::to_string(names.size() + 1) : std::string(name));
-    };
-    std::size_t begin = 0;
-    outside_quotes(line, [&](std::size_t i) {
-        const bool ends = separator == ' ' ? is_blank(line[i]) : line[i] == separator;
         // Several blanks separate like one.
-        if (ends && (separator != ' ' || i > begin)) add(line.substr(begin, i - begin));
-        if (ends) begin = i + 1;
-        return names.size() > most_columns;
-    });
-    if (names.size() <= most_columns && begin < line.size()) add(line.substr(begin));
+        if (separator != ' ' || end > 0)
+            names.push_back(name.empty() ? "c" + std::to_string(names.size() + 1) : std::string(name));
+        line.remove_prefix(std::min(end + 1, line.size()));
+    }
     return names;
 }
 
@@ -142,14 +113,8 @@ private:
             const auto is_decimal = [&](std::string_view token) { return number_with_decimal_comma(token, ignored); };
             if (std::ranges::any_of(tokens, is_number)) return false;
             if (text_.has_decimal_commas() && std::ranges::any_of(tokens, is_decimal)) return false;
-            std::set<std::string> found;
-            for (const std::string& name : names)
-                if (const std::string axis = plain(name);
-                    (axis == "x" || axis == "y" || axis == "z") && !found.insert(axis).second)
-                    throw Error("line {}: two columns are called {}", text_.line(), quote(name))
-                        .hint("rename one of them");
-            throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z", text_.line(),
-                        quote(tokens.front()))
+            throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z, each once",
+                        text_.line(), quote(tokens.front()))
                 .hint(
                     "if it is a title, remove the line or begin it with #; if it has names, call three of them x, y "
                     "and z");
@@ -162,9 +127,7 @@ private:
 
     /// "//X Y Z Intensity" and "# x y z nx ny nz" are comments to most programs and names to some.
     void read_names_in_comments() {
-        layout_.unread_comments = text_.comments().others();
-        const std::vector<std::string> comments = text_.comments().texts();
-        for (const std::string& comment : std::views::reverse(comments)) {
+        for (const std::string& comment : std::views::reverse(text_.comments().texts())) {
             std::vector<std::string> names = split_names(comment);
             const Indices axes = indices_of(names, {"x", "y", "z"});
             if (axes.empty()) continue;

@@ -3,9 +3,9 @@
 /// Tables of numbers as text: their header, the names of their columns, and the columns after x, y and z.
 ///
 /// A line of names is split at semicolons when it has some, else at the first of commas, bars, tabs, blanks that it
-/// has. Single or double quotes around a name protect separators in it; blanks around a name and one separator after
-/// the last do not count. An empty name becomes the number of its column: c4. Upper and lower case, `_`, `-`, `.` and
-/// blanks make no difference: Nx and n.x are one name, normal_x and NormalX another.
+/// has. Quotes and blanks around a name and one separator after the last do not count. An empty name becomes the number
+/// of its column: c4. Upper and lower case, `_`, `-`, `.` and blanks make no difference: Nx and n.x are one name,
+/// normal_x and NormalX another.
 
 #include <optional>
 
@@ -37,8 +37,6 @@ struct TextLayout {
     std::array<std::size_t, 3> axes{0, 1, 2};  ///< the columns of x, y, z
     /// A comment with the names x, y and z but without a name for every column; empty when there is none.
     std::string ignored_names;
-    /// Comments before the first row that were not kept, so not searched for names; 0 when a row has the names.
-    std::size_t unread_comments = 0;
 };
 
 /// Moves the cursor from the text's beginning to the first row of numbers. Names are taken from a row before it or else

@@ -1,42 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/common/text_cursor.hpp"
 
-#include <algorithm>
-
-#include "scanmill/data/quantity.hpp"
-
 namespace scanmill {
 
 void KeptComments::add(std::string_view comment) {
-    ++added_;
-    if (first_.size() < most) {
-        first_.emplace_back(comment);
-        return;
-    }
-    if (!declaration_in(comment, "frame").empty()) last_[frame] = comment;
-    const std::string_view declared = declaration_in(comment, "unit");
-    if (declared.empty()) return;
-    const auto unit = length_unit(declared);
-    std::string& last = last_[unit ? known_unit : unknown_unit];
-    if (unit && !last.empty() && length_unit(declaration_in(last, "unit")) != unit) last_[other_unit] = last;
-    last = comment;
-}
-
-std::vector<std::string> KeptComments::texts() const {
-    std::vector<std::string> texts = first_;
-    std::ranges::remove_copy(last_, std::back_inserter(texts), std::string());
-    return texts;
+    constexpr std::size_t most = 1000;
+    if (texts_.size() < most || !declaration_in(comment, "unit").empty() || !declaration_in(comment, "frame").empty())
+        texts_.emplace_back(comment);
 }
 
 void KeptComments::append(const KeptComments& following) {
     for (const std::string& text : following.texts()) add(text);
-    added_ += following.others();
 }
-
-namespace {
-constexpr std::string_view infinite = "#INF";
-constexpr std::array<std::string_view, 4> not_numbers{infinite, "#IND", "#QNAN", "#SNAN"};
-}  // namespace
 
 bool TextCursor::next_row() {
     if (begun_) {
@@ -69,15 +44,6 @@ std::size_t TextCursor::count_tokens() const {
     return count;
 }
 
-std::pair<std::string_view, std::string_view> TextCursor::mixed_separators() const {
-    std::vector<std::string_view> found;
-    if (gaps_ & comma_gap) found.push_back("commas");
-    if (gaps_ & semicolon_gap) found.push_back("semicolons");
-    if (gaps_ & bar_gap) found.push_back("bars");
-    if (gaps_ & blank_gap) found.push_back("blanks");
-    return {found.at(0), found.at(1)};
-}
-
 void TextCursor::skip_comment() {
     at_ += *at_ == '/' ? 2 : 1;
     const char* const begin = at_;
@@ -95,11 +61,6 @@ void TextCursor::skip_line_end() {
     ++line_;
 }
 
-bool TextCursor::begins_not_a_number(std::string_view text) {
-    const auto begins = [text](std::string_view word) { return text.starts_with(word); };
-    return std::ranges::any_of(not_numbers, begins);
-}
-
 bool number_with_decimal_comma(std::string_view token, double& value) {
     if (token.find('.') != std::string_view::npos) return false;
     std::string with_point(token);
@@ -112,19 +73,15 @@ bool number_with_decimal_comma(std::string_view token, double& value) {
 }
 
 bool number_of_token(std::string_view token, double& value) {
-    const std::size_t hash = token.find('#');
-    if (hash == std::string_view::npos) return parse_number(token, value);
-    for (const std::string_view word : not_numbers) {
-        if (!token.substr(hash).starts_with(word)) continue;
-        const std::string_view before = token.substr(0, hash), after = token.substr(hash + word.size());
-        if ((before != "1." && before != "-1." && before != "+1.") ||
-            after.find_first_not_of('0') != std::string_view::npos)
-            return false;
-        value = word == infinite ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
-        if (before.front() == '-') value = -value;
-        return true;
-    }
-    return false;
+    if (parse_number(token, value)) return true;
+    const bool is_negative = token.starts_with('-');
+    if (is_negative || token.starts_with('+')) token.remove_prefix(1);
+    token = token.substr(0, token.find_last_not_of('0') + 1);
+    const bool is_infinite = token == "1.#INF";
+    if (!is_infinite && token != "1.#IND" && token != "1.#QNAN" && token != "1.#SNAN") return false;
+    value = is_infinite ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    if (is_negative) value = -value;
+    return true;
 }
 
 }  // namespace scanmill

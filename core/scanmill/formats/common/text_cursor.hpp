@@ -15,7 +15,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "scanmill/formats/common/reading.hpp"
@@ -25,24 +24,14 @@ namespace scanmill {
 /// Comments in bounded memory: a file may have a comment in every other line.
 class KeptComments {
 public:
-    static constexpr std::size_t most = 1000;
-
     void add(std::string_view comment);
     /// Adds the comments of the text that follows.
     void append(const KeptComments& following);
-
-    /// The first `most` comments. After them, of the others: the last that declares a different unit than the last
-    /// known unit, that last known unit, the last unknown unit, and the last frame (see declared_frame()).
-    std::vector<std::string> texts() const;
-    /// The number of comments that are not among texts().
-    std::size_t others() const { return added_ - texts().size(); }
+    /// The first 1000 comments, and of the others those that declare a unit or a frame (see declared_frame()).
+    const std::vector<std::string>& texts() const { return texts_; }
 
 private:
-    enum Declaration { other_unit, known_unit, unknown_unit, frame };
-
-    std::vector<std::string> first_;
-    std::array<std::string, 4> last_;  // by Declaration; empty when there is none
-    std::size_t added_ = 0;
+    std::vector<std::string> texts_;
 };
 
 struct TextRules {
@@ -54,7 +43,8 @@ struct TextRules {
     std::size_t line = 1;  ///< number of the first line
 };
 
-/// The number that a token spells: as parse_number(), and infinity and NaN as Microsoft's libraries print them.
+/// The number that a token spells: as parse_number(), and infinity and NaN as Microsoft's libraries printed them until
+/// 2015: 1.#INF, -1.#IND.
 bool number_of_token(std::string_view token, double& value);
 /// The same for a text whose numbers have decimal commas: between two digits, at most one. A point is not accepted.
 bool number_with_decimal_comma(std::string_view token, double& value);
@@ -90,8 +80,6 @@ public:
     bool has_decimal_commas() const { return rules_.decimal_commas; }
     /// Whether commas separate tokens in the part of the row that was read.
     bool has_commas() const { return (gaps_ & comma_gap) != 0; }
-    /// Two of the row's separators: "commas" and "blanks". Pre: mixes_separators().
-    std::pair<std::string_view, std::string_view> mixed_separators() const;
     /// Whether the row, as far as it was read, has a comma, semicolon or bar without a number before it.
     bool has_empty_field() const { return gaps_ & empty_field; }
     /// Tokens left in this row; does not move.
@@ -121,14 +109,12 @@ private:
     static unsigned kind(char c) { return kinds[static_cast<unsigned char>(c)]; }
     static bool ends_line(char c) { return kind(c) == line_end; }
     unsigned gap_at(char c) const { return kind(c) & separators_; }
-    /// Pre: `at` is not the end.
+    /// Pre: `at` is neither the end nor the first character of a token.
     bool ends_token(const char* at) const {
         if ((kind(*at) & (separators_ | line_end)) != 0) return true;
         if (*at == '\0') return false;
-        return *at == rules_.continuation || (*at == rules_.comment && !begins_not_a_number({at, end_}));
+        return *at == rules_.continuation || (*at == rules_.comment && at[-1] != '.');  // 1.#INF is a number
     }
-    /// Whether the text begins as infinity and NaN go on after "1." from Microsoft's libraries: #INF, #IND, #QNAN.
-    static bool begins_not_a_number(std::string_view text);
     bool at_comment() const {
         if (*at_ == '/') return rules_.slashes && end_ - at_ > 1 && at_[1] == '/';
         return *at_ == rules_.comment && rules_.comment != '\0';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/detail/content.hpp"
 
+#include <iconv.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -80,55 +81,13 @@ private:
     bool is_at_end_ = false;
 };
 
-unsigned unit_at(std::string_view text, std::size_t at, bool is_big) {
-    const auto first = static_cast<unsigned char>(text[at]), second = static_cast<unsigned char>(text[at + 1]);
-    return is_big ? first << 8 | second : second << 8 | first;
-}
-
-/// Whether all units may be characters of a text; with `only_ascii`, of one in ASCII.
-bool is_text(std::string_view head, bool is_big, bool only_ascii) {
-    for (std::size_t at = 0; at + 1 < head.size(); at += 2) {
-        const unsigned unit = unit_at(head, at, is_big);
-        if (unit < ' ' ? unit < '\t' || unit > '\r' : only_ascii && unit >= 0x7f) return false;
-    }
-    return true;
-}
-
-constexpr std::size_t looked_at = 4096;
-
-/// Big-endian if true, little-endian if false; empty: the bytes are not UTF-16 text.
-std::optional<bool> utf16_order(std::string_view bytes) {
-    const std::string_view head = bytes.substr(0, looked_at);
-    if (head.size() < 4) return std::nullopt;
-    for (const bool is_big : {false, true}) {
-        const bool has_mark = head.starts_with(is_big ? big_mark : little_mark);
-        if (is_text(has_mark ? head.substr(2) : head, is_big, !has_mark)) return is_big;
-    }
-    return std::nullopt;
-}
-
-void put_utf8(unsigned code, Array<char>& text) {
-    const auto put = [&](unsigned byte) { text.push_back(static_cast<char>(byte)); };
-    if (code < 0x80) return put(code);
-    if (code < 0x800) {
-        put(0xc0 | code >> 6);
-    } else {
-        if (code < 0x10000) {
-            put(0xe0 | code >> 12);
-        } else {
-            put(0xf0 | code >> 18);
-            put(0x80 | (code >> 12 & 0x3f));
-        }
-        put(0x80 | (code >> 6 & 0x3f));
-    }
-    put(0x80 | (code & 0x3f));
-}
-
 }  // namespace
 
 Wrapping wrapping_of(std::string_view bytes) {
     if (bytes.starts_with(gzip_magic)) return Wrapping::gzip;
-    return utf16_order(bytes) ? Wrapping::utf16 : Wrapping::none;
+    const bool is_utf32 = bytes.substr(2).starts_with(std::string_view("\0\0", 2));
+    const bool has_mark = bytes.starts_with(little_mark) || bytes.starts_with(big_mark);
+    return has_mark && !is_utf32 ? Wrapping::utf16 : Wrapping::none;
 }
 
 Array<char> decompressed(std::string_view gzip, std::uint64_t most, const OnWarning& on_warning) {
@@ -161,21 +120,24 @@ Array<char> utf8_of(std::string_view utf16) {
     if (utf16.size() % 2 != 0)
         throw Error("is text in UTF-16 and has an odd number of bytes, {}", utf16.size())
             .hint("the file is truncated: fetch it again, or save it as UTF-8 in a text editor");
-    const bool is_big = utf16_order(utf16).value();
-    Array<char> text;
-    text.reserve(utf16.size() / 2);
-    for (std::size_t at = utf16.starts_with(is_big ? big_mark : little_mark) ? 2 : 0; at < utf16.size(); at += 2) {
-        unsigned code = unit_at(utf16, at, is_big);
-        const auto is_half = [](unsigned unit, unsigned first) { return unit >= first && unit < first + 0x400; };
-        const unsigned next = at + 2 < utf16.size() ? unit_at(utf16, at + 2, is_big) : 0;
-        if (is_half(code, 0xd800) && is_half(next, 0xdc00)) {
-            code = 0x10000 + ((code - 0xd800) << 10 | (next - 0xdc00));
-            at += 2;
-        } else if (is_half(code, 0xd800) || is_half(code, 0xdc00)) {
-            code = '?';
-        }
-        put_utf8(code, text);
+    const iconv_t converter = ::iconv_open("UTF-8", utf16.starts_with(big_mark) ? "UTF-16BE" : "UTF-16LE");
+    if (converter == reinterpret_cast<iconv_t>(-1))
+        throw Error("is text in UTF-16, which the C library of this system does not convert")
+            .hint("save the file as UTF-8 in a text editor");
+    constexpr std::size_t most_growth = 2;  // bytes of UTF-8 per byte of UTF-16, rounded up
+    Array<char> text(most_growth * utf16.size());
+    char *in = const_cast<char*>(utf16.data()) + little_mark.size(),
+         *out = text.data();  // iconv does not write to `in`
+    std::size_t in_left = utf16.size() - little_mark.size(), out_left = text.size();
+    while (::iconv(converter, &in, &in_left, &out, &out_left) == std::size_t(-1)) {
+        // An unpaired surrogate.
+        in += 2;
+        in_left -= 2;
+        *out++ = '?';
+        --out_left;
     }
+    ::iconv_close(converter);
+    text.resize(text.size() - out_left);
     return text;
 }
 

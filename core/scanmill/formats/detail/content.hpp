@@ -11,8 +11,7 @@
 
 namespace scanmill {
 
-/// gzip: by its first two bytes. UTF-16: by a byte order mark or by the zero bytes of plain ASCII, if the first
-/// characters are text.
+/// By the first bytes: those of gzip, or the byte order mark of UTF-16.
 enum class Wrapping { none, gzip, utf16 };
 Wrapping wrapping_of(std::string_view bytes);
 

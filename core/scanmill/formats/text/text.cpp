@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cctype>
-#include <set>
+#include <ranges>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/quantity.hpp"
@@ -33,7 +33,6 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
     TextCursor cursor(text, tagged_rules);
     Array<Vec3> positions;
     u64 others = 0;
-    std::set<char> tags;
     while (cursor.next_row()) {
         const std::string_view tag = cursor.token();
         if (!is_tag(tag))
@@ -41,7 +40,6 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
                         quote(tag));
         if (tag != "p") {
             ++others;
-            tags.insert(tag[0]);
             continue;
         }
         if (const std::size_t found = cursor.count_tokens(); found != 3)
@@ -52,8 +50,7 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
     if (positions.empty()) throw Error("holds no points: no row begins with p");
     require_countable(positions.size(), "points");
     if (others > 0)
-        warn(options.on_warning, "{} not of points ({}) and left out", count_text(others, "row is", "rows are"),
-             fmt::join(tags, ", "));
+        warn(options.on_warning, "{} not begin with p and were left out", count_text(others, "row does", "rows do"));
     return loaded_file("XYZ", "ascii", cursor.comments().texts(), std::move(positions), {}, options);
 }
 
@@ -73,34 +70,18 @@ public:
         if (!layout_.ignored_names.empty())
             warn(options_.on_warning, "the comment {} was ignored: it does not name x, y, z and then the rest of {}",
                  quote(layout_.ignored_names), count_text(layout_.width, "column", "columns"));
-        if (layout_.unread_comments > 0)
-            warn(options_.on_warning,
-                 "{} before the numbers, after the first {}, {} not searched for the names of columns",
-                 count_text(layout_.unread_comments, "comment", "comments"), KeptComments::most,
-                 by_count(layout_.unread_comments, "was", "were"));
         read_rows();
-        std::vector<Array<double>> normals = normals_after_points();
-        if (normals.empty()) check_count();
+        check_count();
         require_countable(positions_.size(), "points");
         warn_of_commas();
         TriangleMesh vertices;
-        vertices.vertex_columns =
-            normals.empty() ? columns()
-                            : text_columns({"nx", "ny", "nz"}, std::move(normals), false, options_.on_warning);
+        vertices.vertex_columns = columns();
         return loaded_file("XYZ", "ascii", text_.comments().texts(), std::move(positions_), std::move(vertices),
                            options_);
     }
 
 private:
-    /// Points after a line with their number.
-    struct Block {
-        u64 declared;
-        std::size_t line;
-        std::size_t first_point;
-    };
-
     void read_rows() {
-        if (layout_.declared_points) blocks_.push_back({*layout_.declared_points, layout_.declared_in_line, 0});
         // A row takes at least two bytes per number: the file's size bounds the reserved memory.
         constexpr std::size_t usual_number_text = 8;
         const std::size_t guess = size_ / (usual_number_text * layout_.width) + 1;
@@ -111,25 +92,24 @@ private:
         for (Array<double>& column : further_) column.reserve(guess);
         row_.resize(layout_.width);
         do {
-            if (!read_row()) continue;
+            read_row();
             const auto [x, y, z] = layout_.axes;
             positions_.push_back({row_[x], row_[y], row_[z]});
             for (std::size_t i = 0; i < further_.size(); ++i) further_[i].push_back(row_[further_columns_[i]]);
         } while (text_.next_row());
     }
 
-    /// Fills row_; false when the row is the count of another block.
-    bool read_row() {
+    /// Fills row_.
+    void read_row() {
         const std::string_view rest = text_.rest();
         const std::size_t width = row_.size();
         double* const numbers = row_.data();
         for (std::size_t i = 0; i < width; ++i) {
             if (!text_.more()) {
-                if (i == 1 && begins_block(numbers[0])) return false;
                 require_equal_separators(rest);
                 throw_width(i);
             }
-            if (!text_.number(numbers[i]) && !quoted_number(numbers[i])) throw_not_a_number(rest);
+            if (!text_.number(numbers[i])) throw_not_a_number(rest);
         }
         if (text_.more()) {
             refuse_decimal_commas(rest);
@@ -137,7 +117,6 @@ private:
         }
         require_equal_separators(rest);
         has_commas_ = text_.has_commas();
-        return true;
     }
 
     /// `rest`: the text from the row on.
@@ -168,23 +147,11 @@ private:
     }
 
     [[noreturn]] void throw_width(std::size_t found) const {
-        throw Error("line {}: found {}; the rows before have {}", text_.line(), count_text(found, "column", "columns"),
+        Error error("line {}: found {}; the rows before have {}", text_.line(), count_text(found, "column", "columns"),
                     layout_.width);
-    }
-
-    bool begins_block(double number) {
-        constexpr double most = 1e15;  // whole, and within 64 bits
-        if (blocks_.empty() || !(number >= 0 && number <= most) || number != std::trunc(number)) return false;
-        check_count();
-        blocks_.push_back({static_cast<u64>(number), text_.line(), positions_.size()});
-        return true;
-    }
-
-    /// Some programs put numbers in quotes.
-    bool quoted_number(double& value) const {
-        const std::string_view token = text_.last_token();
-        return token.size() > 2 && token.front() == '"' && token.back() == '"' &&
-               parse_number(token.substr(1, token.size() - 2), value);
+        if (found == 1 && layout_.declared_points)
+            error.set_hint("if another scan begins there, with its number of points, write it into a file of its own");
+        throw error;
     }
 
     /// Checks the row as far as it was read.
@@ -193,56 +160,32 @@ private:
         if (text_.has_empty_field())
             throw Error("line {}: a field is empty; every point needs a number in every column", text_.line());
         if (text_.mixes_separators())
-            throw Error("line {}: {} separate some numbers and {} others", text_.line(), text_.mixed_separators().first,
-                        text_.mixed_separators().second)
+            throw Error("line {}: the numbers have different separators", text_.line())
                 .hint("separate all numbers by the same character");
     }
 
-    /// Warns when the last block is not as long as its count declares. A PWN file is refused: its count separates
-    /// points from normals.
+    /// Warns when the points are not as many as declared. Normals that follow the points are refused.
     void check_count() const {
-        if (blocks_.empty()) return;
-        const Block& block = blocks_.back();
-        const std::size_t found = positions_.size() - block.first_point;
-        if (found == block.declared) return;
-        if (extension_ == "pwn")
-            throw Error("line {} declares {}; {} {}", block.line, count_text(block.declared, "point", "points"), found,
-                        by_count(found, "row follows", "rows follow"))
-                .hint("the file is truncated or its count is wrong: correct that line");
+        const std::size_t found = positions_.size(), declared = layout_.declared_points.value_or(found);
+        if (found == declared) return;
+        const auto is_normal = [](const Vec3& row) { return std::abs(row.norm() - 1) < 0.1; };
+        if (extension_ == "pwn" ||
+            (found == 2 * declared && std::ranges::all_of(positions_ | std::views::drop(declared), is_normal)))
+            throw Error("line {} declares {}; {} {}", layout_.declared_in_line, count_text(declared, "point", "points"),
+                        found, by_count(found, "row follows", "rows follow"))
+                .hint(
+                    "if normals follow the points, write the normal of each point behind its coordinates; else "
+                    "correct that line");
         warn(options_.on_warning, "line {} declares {}; {} {}: the count is wrong, or the file is incomplete",
-             block.line, count_text(block.declared, "point", "points"), found, by_count(found, "follows", "follow"));
-    }
-
-    /// When the only count is half the number of rows of three numbers: the second half, removed from the positions.
-    std::vector<Array<double>> normals_after_points() {
-        if (blocks_.size() != 1 || !further_.empty()) return {};
-        const std::size_t points = blocks_[0].declared;
-        if (points == 0 || positions_.size() % 2 != 0 || positions_.size() / 2 != points) return {};
-        std::vector<Array<double>> normals(3);
-        for (std::size_t row = points; row < 2 * points; ++row)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                normals[axis].push_back(positions_[row][static_cast<Eigen::Index>(axis)]);
-        if (!are_unit_normals(normals[0], normals[1], normals[2]) && extension_ != "pwn") return {};
-        positions_.resize(points);
-        return normals;
+             layout_.declared_in_line, count_text(declared, "point", "points"), found,
+             by_count(found, "follows", "follow"));
     }
 
     ColumnTable columns() {
         std::vector<std::string> names;
         for (const std::size_t column : further_columns_)
             if (!layout_.names.empty()) names.push_back(layout_.names[column]);
-        ColumnTable table =
-            text_columns(std::move(names), std::move(further_), extension_ == "pts", options_.on_warning);
-        if (blocks_.size() < 2) return table;
-        warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' has their numbers",
-             blocks_.size());
-        Array<u32> scans(positions_.size());
-        for (std::size_t i = 0; i < blocks_.size(); ++i) {
-            const std::size_t end = i + 1 < blocks_.size() ? blocks_[i + 1].first_point : scans.size();
-            for (std::size_t row = blocks_[i].first_point; row < end; ++row) scans[row] = static_cast<u32>(i);
-        }
-        table.add(Column("scan", 1, Buffer(std::move(scans))));
-        return table;
+        return text_columns(std::move(names), std::move(further_), extension_ == "pts", options_.on_warning);
     }
 
     TextCursor text_;
@@ -252,7 +195,6 @@ private:
     std::string extension_;
     const ReadOptions& options_;
     TextLayout layout_;
-    std::vector<Block> blocks_;
     Array<double> row_;
     Array<Vec3> positions_;
     std::vector<std::size_t> further_columns_;  // of a row: all except x, y and z
@@ -308,7 +250,7 @@ Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
 
 /// Whether the columns are x, y and z only, without a reason for a warning.
 bool is_streamed(const TextLayout& layout) {
-    return layout.width == 3 && !layout.declared_points && layout.ignored_names.empty() && layout.unread_comments == 0;
+    return layout.width == 3 && !layout.declared_points && layout.ignored_names.empty();
 }
 
 class TextStream : public PointStream {

@@ -61,8 +61,8 @@ TEST(DecimalCommas, BetweenCommas_AreNotGuessed_ButReported) {
 }
 
 TEST(DecimalCommas_Refuses, RowsThatAreNeither) {
-    EXPECT_THAT(refusal_of("1 2 3\n4,5 6\n", "a.xyz"), HasSubstr("line 2: commas separate some numbers"));
-    EXPECT_THAT(refusal_of("1,2,3 4\n", "a.xyz"), HasSubstr("commas separate some numbers"));
+    EXPECT_THAT(refusal_of("1 2 3\n4,5 6\n", "a.xyz"), HasSubstr("line 2: the numbers have different separators"));
+    EXPECT_THAT(refusal_of("1,2,3 4\n", "a.xyz"), HasSubstr("the numbers have different separators"));
     EXPECT_THAT(refusal_of("x,y,z\n1,5,2,5,3,5\n", "a.csv"), HasSubstr("6 columns for 3 names"));
 }
 

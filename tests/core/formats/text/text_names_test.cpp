@@ -5,7 +5,6 @@
 namespace scanmill::test {
 namespace {
 
-using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -35,7 +34,7 @@ TEST(TextNames_Order, OfTheAxes_IsFree) {
 }
 
 TEST(TextNames_BlanksInNames, ArePartOfThem_WhereSomethingElseSeparates) {
-    EXPECT_THAT(names_of(*points_in("X,Y,Z,GPS Time,\"a, b\"\n1,2,3,4,5\n", "a.csv")), ElementsAre("GPS Time", "a, b"));
+    EXPECT_THAT(names_of(*points_in("X,Y,Z,GPS Time,\"a b\"\n1,2,3,4,5\n", "a.csv")), ElementsAre("GPS Time", "a b"));
     EXPECT_THAT(names_of(*points_in("X\tY\tZ\tGPS Time\n1\t2\t3\t4\n", "a.txt")), ElementsAre("GPS Time"));
 }
 
@@ -106,9 +105,9 @@ TEST(TextNames_Text, InAComment_OfNoAxes_AreAComment) {
 }
 
 TEST(TextNames_Refusals, SayTheLine) {
-    EXPECT_THAT(refusal_of("a,b,c\n1,2,3\n", "a.csv"), ContainsRegex("line 1: 'a' .*neither .*numbers nor names"));
-    EXPECT_THAT(refusal_of("X,Y,Y,Z,x\n1,2,3,4,5\n", "a.csv"), HasSubstr("line 1: two columns are called 'Y'"));
-    EXPECT_THAT(refusal_of("X,Y,Z,x\n1,2,3,4\n", "a.csv"), HasSubstr("two columns are called 'x'"));
+    EXPECT_THAT(refusal_of("a,b,c\n1,2,3\n", "a.csv"), HasSubstr("line 1: 'a' is neither a row of numbers nor names"));
+    EXPECT_THAT(refusal_of("X,Y,Y,Z,x\n1,2,3,4,5\n", "a.csv"), HasSubstr("x, y and z, each once"));
+    EXPECT_THAT(refusal_of("X,Y,Z,x\n1,2,3,4\n", "a.csv"), HasSubstr("x, y and z, each once"));
     EXPECT_THAT(refusal_of("# c\nX,Y,Z,I\n1,2,3\n", "a.csv"), HasSubstr("line 3: 3 columns for 4 names"));
     EXPECT_THAT(refusal_of("x,y,z,i,i\n1,2,3,4,5\n", "a.csv"), HasSubstr("two columns are called 'i'"));
     EXPECT_THAT(refusal_of("x,y,z\n1,2,three\n", "a.csv"), HasSubstr("line 2: 'three' is not a number"));
