@@ -2,17 +2,20 @@
 #include "poisson/poisson.hpp"
 
 #include <fmt/format.h>
+#include <pcl/point_types.h>
+#include <pcl/surface/poisson.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <vector>
 
 #include "fill_holes/fill_holes.hpp"
-#include "poisson/octree_surface.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/statistics.hpp"
@@ -31,6 +34,7 @@ namespace scanmill {
 namespace {
 
 constexpr u32 least_depth = 3, most_depth = 12;
+constexpr int full_depth = 5;  // PCL divides its octree no earlier
 constexpr double most_scale = 10;
 constexpr std::size_t neighbours = 8;
 constexpr double far_factor = 2;  // of the distance to the 8th neighbour
@@ -101,32 +105,49 @@ void require_extent(const PointTree& tree) {
             .hint("a scan of one line has no surface");
 }
 
-TriangleMesh surface_of(const Oriented& points, const Frame& frame, const PoissonParams& params, double& cell,
-                        Context& context) {
+/// PCL's surface of the points. Its memory is static, so calls from several threads wait for each other.
+TriangleMesh surface_of(const Oriented& points, const Frame& frame, const PoissonParams& params, double& cell) {
     const BoundingBox box = bounding_box(points.positions);
     const Vec3 centre = (box.low + box.high) / 2;
     const double size = (box.high - box.low).maxCoeff();
-    Array<OrientedPoint> scaled(points.positions.size());
-    for (std::size_t i = 0; i < scaled.size(); ++i) {
-        const Eigen::Vector3f at = ((points.positions[i] - centre) / size).cast<float>();
-        const Eigen::Vector3f normal = points.normals[i].cast<float>();
-        scaled[i] = {at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()};
+    const auto scaled = std::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+    for (std::size_t i = 0; i < points.positions.size(); ++i) {
+        pcl::PointNormal& point = scaled->emplace_back();
+        point.getVector3fMap() = ((points.positions[i] - centre) / size).cast<float>();
+        point.getNormalVector3fMap() = points.normals[i].cast<float>();
     }
-    OctreeSurface surface = octree_surface(scaled, static_cast<int>(params.depth), params.scale, [&](double share) {
-        context.check_cancelled();
-        context.progress(0.02 + 0.78 * share);
-    });
-    if (surface.triangles.empty())
+    pcl::Poisson<pcl::PointNormal> solver;
+    solver.setInputCloud(scaled);
+    solver.setDepth(static_cast<int>(params.depth));
+    solver.setScale(static_cast<float>(params.scale));
+    const int undivided = std::max(static_cast<int>(params.depth), full_depth);
+    solver.setSolverDivide(undivided);
+    solver.setIsoDivide(undivided);
+    solver.setThreads(1);
+    pcl::PointCloud<pcl::PointNormal> vertices;
+    std::vector<pcl::Vertices> triangles;
+    {
+        static std::mutex one_at_a_time;
+        const std::scoped_lock lock(one_at_a_time);
+        solver.performReconstruction(vertices, triangles);
+    }
+    if (triangles.empty())
         throw Error("no surface separates the {} points: their normals cancel out, or the octree is too coarse",
                     points.positions.size())
             .hint("check the sides of the normals, or raise depth");
-    cell = surface.cell * size;
-    for (Vec3& position : surface.positions) position = centre + size * position;
-    require_finite(surface.positions, "vertices of the surface");
+    cell = params.scale * size / (1 << params.depth);
+    Array<Vec3> positions;
+    positions.reserve(vertices.size());
+    for (const pcl::PointNormal& vertex : vertices)
+        positions.push_back(centre + size * vertex.getVector3fMap().cast<double>());
+    require_finite(positions, "vertices of the surface");
     TriangleMesh mesh;
     mesh.frame = frame;
-    mesh.positions = std::move(surface.positions);
-    mesh.triangles = std::move(surface.triangles);
+    mesh.positions = std::move(positions);
+    Array<Triangle> corners;
+    corners.reserve(triangles.size());
+    for (const auto& [v] : triangles) corners.push_back({u32(v[0]), u32(v[1]), u32(v[2])});
+    mesh.triangles = std::move(corners);
     return mesh;
 }
 
@@ -302,7 +323,9 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
 
     PoissonResult result;
     result.without_normal = cloud.size() - points.positions.size();
-    TriangleMesh whole = surface_of(points, cloud.frame, params, result.cell, context);
+    TriangleMesh whole = surface_of(points, cloud.frame, params, result.cell);
+    context.check_cancelled();
+    context.progress(0.8);
     const Cracks cracks = fill_cracks(whole, context);
     result.cracks = cracks.filled;
     context.progress(0.85);

@@ -2,7 +2,7 @@
 #pragma once
 /// Makes a surface of points with normals: the boundary between inside and outside that agrees best with all of them.
 ///
-/// Source: Kazhdan, Hoppe 2013, "Screened Poisson surface reconstruction"; by PCL (see octree_surface.hpp).
+/// Source: Kazhdan, Hoppe 2013, "Screened Poisson surface reconstruction"; by pcl::Poisson.
 
 #include <optional>
 
@@ -73,7 +73,9 @@ struct PoissonResult {
 /// that stay open, of a closed surface that is inside out, and of columns of the points other than `normal`, which are
 /// dropped.
 ///
-/// Deterministic: the same bytes for any number of threads and any processor. They depend on the order of the points.
+/// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. They depend on
+/// the order of the points. PCL cannot be cancelled: the call returns after its part. It prints warnings on stderr, keeps
+/// the octree's memory for the next call, and leaks 4^(depth + 2) bytes.
 /// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as
 /// the distance between points. Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`,
 /// `cracks`, `loops`, `cell`.
