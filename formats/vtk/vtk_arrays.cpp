@@ -75,25 +75,11 @@ bool fits_32_bits(std::size_t count) { return count <= std::numeric_limits<vtkTy
 
 }  // namespace
 
-std::string escaped(std::string_view name) {
-    std::string text;
-    for (const char c : name) {
-        switch (c) {
-            case '&': text += "&amp;"; break;
-            case '<': text += "&lt;"; break;
-            case '>': text += "&gt;"; break;
-            case '"': text += "&quot;"; break;
-            default: text += c;
-        }
-    }
-    return text;
-}
-
 vtkSmartPointer<vtkDataArray> array_of(ScalarType type, const void* numbers, std::size_t rows, u32 components,
                                        std::string_view name) {
     return visit_scalar(type, [&]<class T>(T) -> vtkSmartPointer<vtkDataArray> {
         const auto array = vtkSmartPointer<vtkAOSDataArrayTemplate<T>>::New();
-        array->SetName(escaped(name).c_str());
+        array->SetName(xml_escaped(name).c_str());  // VTK writes names as they are
         array->SetNumberOfComponents(static_cast<int>(components));
         array->SetArray(writable<T>(numbers), static_cast<vtkIdType>(rows * components), keep_the_memory);
         return array;

@@ -26,9 +26,6 @@
 
 namespace scanmill::vtk {
 
-/// `name` as an attribute of XML: VTK writes names without escaping them. Pre: valid UTF-8.
-std::string escaped(std::string_view name);
-
 /// A view of `rows` × `components` numbers.
 vtkSmartPointer<vtkDataArray> array_of(ScalarType type, const void* numbers, std::size_t rows, u32 components,
                                        std::string_view name);

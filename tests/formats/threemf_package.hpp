@@ -3,6 +3,7 @@
 /// The content of a 3MF package as read by lib3mf.
 
 #include <Model/COM/NMR_DLLInterfaces.h>
+#include <zlib.h>
 
 #include "core/formats/support.hpp"
 
@@ -11,7 +12,7 @@ namespace scanmill::test {
 /// The only object of a package, with the properties that assimp does not give.
 struct SeenBy3mf {
     DWORD unit = 99;
-    std::string name, uuid;
+    std::string name;
     Vec3 offset = Vec3::Zero();
     std::vector<Vec3> vertices;  ///< without the offset
 };
@@ -19,6 +20,23 @@ struct SeenBy3mf {
 inline std::string bytes_of_3mf(const TriangleMesh& mesh, Warnings* warnings = nullptr) {
     return write_bytes("a.3mf", std::make_shared<const TriangleMesh>(mesh),
                        warnings ? warnings->writing() : WriteOptions{});
+}
+
+/// The XML of the model, found by the local header of its part and decompressed by zlib.
+inline std::string model_in_3mf(const std::string& bytes) {
+    const std::string_view name = "3D/3dmodel.model";
+    const std::size_t begin = bytes.find(name) + name.size();
+    std::string xml(1 << 20, '\0');
+    z_stream stream{};
+    EXPECT_EQ(::inflateInit2(&stream, -15), Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + begin));
+    stream.avail_in = static_cast<uInt>(bytes.size() - begin);
+    stream.next_out = reinterpret_cast<Bytef*>(xml.data());
+    stream.avail_out = static_cast<uInt>(xml.size());
+    EXPECT_EQ(::inflate(&stream, Z_FINISH), Z_STREAM_END);
+    xml.resize(stream.total_out);
+    ::inflateEnd(&stream);
+    return xml;
 }
 
 /// lib3mf's objects are left to the end of the program.
@@ -48,8 +66,6 @@ inline SeenBy3mf read_by_3mf(std::string bytes) {
     EXPECT_EQ(lib3mf_builditem_getobjectresource(item, &object), 0);
     EXPECT_EQ(lib3mf_object_getnameutf8(object, text, sizeof text, &length), 0);
     seen.name = text;
-    EXPECT_EQ(lib3mf_object_getuuidutf8(object, &found, text), 0);
-    seen.uuid = text;
     EXPECT_EQ(lib3mf_meshobject_getvertexcount(object, &count), 0);
     for (DWORD i = 0; i < count; ++i) {
         MODELMESHVERTEX v;

@@ -143,6 +143,20 @@ std::string valid_text(std::string_view text) {
     return valid;
 }
 
+std::string xml_escaped(std::string_view text) {
+    std::string xml;
+    for (const char c : text) {
+        switch (c) {
+            case '&': xml += "&amp;"; break;
+            case '<': xml += "&lt;"; break;
+            case '>': xml += "&gt;"; break;
+            case '"': xml += "&quot;"; break;
+            default: xml += c;
+        }
+    }
+    return xml;
+}
+
 WrittenNames::WrittenNames(std::string_view format, const WriteOptions& options, std::set<std::string> taken)
     : format_(format),
       options_(&options),

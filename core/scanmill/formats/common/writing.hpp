@@ -49,6 +49,8 @@ std::string comment_lines(const Frame& frame, std::string_view prefix = "# ");
 
 /// The text as valid UTF-8 without control characters, which JSON and XML need: every other byte becomes '_'.
 std::string valid_text(std::string_view text);
+/// The text with XML's entities for &, <, > and ".
+std::string xml_escaped(std::string_view text);
 
 /// Names of columns in a format that allows fewer names than we do: makes them distinct and warns of changed ones.
 class WrittenNames {

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "threemf/threemf.hpp"
+
+#include <Eigen/Geometry>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/data/topology.hpp"
+#include "scanmill/formats/common/rounding.hpp"
+#include "scanmill/formats/common/writing.hpp"
+#include "threemf/zip.hpp"
+
+namespace scanmill::threemf {
+
+namespace {
+
+/// Six times the volume, relative to the first vertex.
+double six_volumes(const TriangleMesh& mesh) {
+    const Vec3 base = mesh.positions[mesh.triangles[0][0]];
+    double sum = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        const Vec3 a = mesh.positions[triangle[0]] - base, b = mesh.positions[triangle[1]] - base,
+                   c = mesh.positions[triangle[2]] - base;
+        sum += a.dot(b.cross(c));
+    }
+    return sum;
+}
+
+/// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with
+/// finite coordinates.
+void require_solid(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and 3MF holds solids only");
+    require_finite(mesh.positions.span(), "vertices");
+    const MeshTopology found = topology(mesh);
+    if (!found.closed)
+        throw Error(
+            "3MF holds closed, oriented manifolds only; the mesh has {} in {}, {} in three or more triangles, {} "
+            "disagree, {} of several fans and {} a vertex twice",
+            count_text(found.boundary_edges, "boundary edge", "boundary edges"),
+            count_text(found.boundary_loops, "loop", "loops"), count_text(found.nonmanifold_edges, "edge", "edges"),
+            count_text(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
+            count_text(found.nonmanifold_vertices, "vertex", "vertices"),
+            count_text(found.degenerate_triangles, "triangle that names", "triangles that name"))
+            .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
+    const double volume = six_volumes(mesh) / 6;
+    if (volume == 0)
+        throw Error("3MF holds solids only; the volume of the mesh is 0, so it has no inside")
+            .hint("STL, GLB and VTP hold meshes of any shape");
+    if (!(volume > 0))
+        throw Error("3MF holds solids only; the mesh encloses the volume {:.6g}: its triangles do not face outwards",
+                    volume)
+            .hint("reverse the triangles, or write STL, GLB or VTP");
+}
+
+/// Exact in single precision.
+Vec3 offset_of(const TriangleMesh& mesh) {
+    BoundingBox box = bounding_box(mesh.positions.span());
+    box.low += mesh.frame.origin;
+    box.high += mesh.frame.origin;
+    return rounded_to_float(distant_origin(box));
+}
+
+std::string_view name_of(LengthUnit unit) {
+    switch (unit) {
+        case LengthUnit::micrometre: return "micron";
+        case LengthUnit::centimetre: return "centimeter";
+        case LengthUnit::metre: return "meter";
+        case LengthUnit::inch: return "inch";
+        case LengthUnit::foot: return "foot";
+        case LengthUnit::millimetre:
+        case LengthUnit::unknown: break;
+    }
+    return "millimeter";
+}
+
+/// Writes 'x="1" y="2" z="3"', as the shortest decimals that read back equal.
+template <class Numbers>
+void put_attributes(const std::array<std::string_view, 3>& names, const Numbers& numbers, OutputBuffer& xml) {
+    for (int i = 0; i < 3; ++i) {
+        xml.text(names[static_cast<std::size_t>(i)]);
+        xml.number(numbers[i]);
+    }
+}
+
+void put_model(const TriangleMesh& mesh, const Vec3& offset, OutputBuffer& xml) {
+    const std::string name = valid_text(mesh.frame.name);
+    xml.text(fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+<model unit="{}" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+<resources><object id="1"{}><mesh>
+<vertices>
+)",
+                         name_of(mesh.frame.unit),
+                         name.empty() ? "" : fmt::format(R"( name="{}")", xml_escaped(name))));
+    const Vec3 shift = mesh.frame.origin - offset;
+    for (const Vec3& position : mesh.positions) {
+        put_attributes({R"(<vertex x=")", R"(" y=")", R"(" z=")"}, (shift + position).cast<float>().eval(), xml);
+        xml.text("\"/>\n");
+    }
+    xml.text("</vertices>\n<triangles>\n");
+    for (const Triangle& triangle : mesh.triangles) {
+        put_attributes({R"(<triangle v1=")", R"(" v2=")", R"(" v3=")"}, triangle, xml);
+        xml.text("\"/>\n");
+    }
+    xml.text("</triangles>\n</mesh></object></resources>\n<build><item objectid=\"1\"");
+    if (offset != Vec3::Zero()) {
+        put_attributes({R"( transform="1 0 0 0 1 0 0 0 1 )", " ", " "}, offset, xml);
+        xml.text("\"");
+    }
+    xml.text("/></build>\n</model>\n");
+}
+
+constexpr std::string_view content_types = R"(<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+</Types>
+)";
+constexpr std::string_view relationships = R"(<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Id="model" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>
+)";
+
+}  // namespace
+
+void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const TriangleMesh mesh = with_used_vertices(*value.get<TriangleMesh>(), "3MF", options);
+    require_solid(mesh);
+    warn_bare_triangles(mesh, "3MF", options);
+    if (mesh.frame.unit == LengthUnit::unknown)
+        warn(options.on_warning,
+             "3MF needs a unit and none is known: 1 was written as 1 mm; declare the scan's unit to avoid this");
+    const Vec3 offset = offset_of(mesh);
+    const Frame local{mesh.frame.unit, mesh.frame.origin - offset, ""};
+    warn_lost_precision(local, mesh.positions.span(), true, "3MF", options);
+    const auto vertex_in_file = [&](std::size_t vertex) {
+        return rounded_to_float(world(local, mesh.positions[vertex]));
+    };
+    warn_collapsed(mesh, joined_vertices(mesh, vertex_in_file), "3MF", options);
+    ZipWriter zip(out);
+    zip.add("[Content_Types].xml", [](OutputBuffer& part) { part.text(content_types); });
+    zip.add("_rels/.rels", [](OutputBuffer& part) { part.text(relationships); });
+    zip.add("3D/3dmodel.model", [&](OutputBuffer& part) { put_model(mesh, offset, part); });
+    zip.finish();
+}
+
+}  // namespace scanmill::threemf
