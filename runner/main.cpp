@@ -17,6 +17,8 @@
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
     if (argc == 2 && argv[1] == std::string_view("worker")) return scanmill::serve_as_worker();
+    // A reader that closes the output early ends the program quietly, also if the caller ignores the signal.
+    std::signal(SIGPIPE, SIG_DFL);
     // Writing beyond the largest file that the system allows then fails with a reason instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");

@@ -170,7 +170,6 @@ void add_plan(Json& entries, const Plan& plan) {
 
 /// Prints the errors and plans of each file at once, or all results as JSON at the end.
 int check(const CheckOptions& options) {
-    const bool as_json = options.json || options.format == "json";
     const FilterLibrary library = open_library();
     const Settings settings = parse_settings(options.settings);
     Json entries = Json::array();
@@ -178,7 +177,7 @@ int check(const CheckOptions& options) {
     for (const std::string& file : options.files) try {
             const CheckedFile checked = check_file(file, library, settings);
             for (const Diagnostics& diagnostics : checked.diagnostics)
-                if (as_json)
+                if (options.json)
                     entries.push_back(to_json(diagnostics));
                 else
                     print(diagnostics);
@@ -186,22 +185,22 @@ int check(const CheckOptions& options) {
                 code = bad_request;
                 continue;
             }
-            if (!options.plan && !as_json) fmt::print("{}: ok, {}\n", file, checked.summary);
+            if (!options.plan && !options.json) fmt::print("{}: ok, {}\n", file, checked.summary);
             for (std::size_t i = 0; options.plan && i < checked.plans.size(); ++i) {
                 const Plan& plan = *checked.plans[i];
-                if (as_json)
+                if (options.json)
                     add_plan(entries, plan);
                 else
                     fmt::print("{}", options.format == "dot" ? plan_dot(plan) : plan_text(plan));
             }
         } catch (const Error& error) {
             code = bad_request;
-            if (as_json)
+            if (options.json)
                 entries.push_back(unreadable_json(file, error));
             else
                 print(error, false);
         }
-    if (as_json) print_files_json(std::move(entries));
+    if (options.json) print_files_json(std::move(entries));
     return code;
 }
 
@@ -213,10 +212,10 @@ void add_check(CLI::App& app, Action& chosen) {
     command.add_option("FILE", options.files, "Workflow or batch files")->required();
     command.add_option("--set", options.settings, "A workflow parameter's value, NAME=VALUE")->take_all();
     CLI::Option* plan = command.add_flag("--plan", options.plan, "Print the steps of every variant and their inputs");
-    command.add_option("--format", options.format, "Of the plan: text, dot (for Graphviz) or json")
-        ->needs(plan)
-        ->check(CLI::IsMember({"text", "dot", "json"}));
-    command.add_flag("--json", options.json, "Print the result as JSON");
+    CLI::Option* format = command.add_option("--format", options.format, "Of the plan: text or dot (for Graphviz)")
+                              ->needs(plan)
+                              ->check(CLI::IsMember({"text", "dot"}));
+    command.add_flag("--json", options.json, "Print the result as JSON")->excludes(format);
 }
 
 }  // namespace scanmill::runner

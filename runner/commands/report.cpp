@@ -7,6 +7,7 @@
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
 #include "output/comparison_text.hpp"
+#include "output/reproduce.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -81,15 +82,14 @@ int report(const Options& options) {
         return done;
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
-    const Comparison comparison = compare_recorded(which, against);
+    const Comparison comparison = compare_recorded(which, against, reproducing_command);
     const std::string metric = metric_for(options, comparison);
-    const std::string format = options.json ? "json" : options.format;
-    if (format == "json")
+    if (options.json)
         print_json(report_json(comparison));
     else
-        fmt::print("{}", format == "junit"      ? junit_xml(comparison, options.strict)
-                         : format == "markdown" ? markdown(comparison, metric)
-                                                : comparison_text(comparison, metric, stdout_width()));
+        fmt::print("{}", options.format == "junit"      ? junit_xml(comparison, options.strict)
+                         : options.format == "markdown" ? markdown(comparison, metric)
+                                                        : comparison_text(comparison, metric, stdout_width()));
     return exit_code_of(comparison, options.strict);
 }
 
@@ -115,15 +115,15 @@ void add_report(CLI::App& app, Action& chosen) {
         command.add_option("--metric", options.metric,
                            "The metric of the table of scans and variants: NAME, STEP.NAME, seconds, cpu-seconds or "
                            "memory. Default: the first that the gate has a rule for");
-    CLI::Option* format = command.add_option("--format", options.format, "Print text, json, junit (XML) or markdown")
-                              ->check(CLI::IsMember({"text", "json", "junit", "markdown"}));
+    CLI::Option* format = command.add_option("--format", options.format, "Print text, junit (XML) or markdown")
+                              ->check(CLI::IsMember({"text", "junit", "markdown"}));
     CLI::Option* table =
         command
             .add_option("--table", options.table,
                         "Print every number of every cell of all ended runs, or of --run, as csv, and do not judge")
             ->check(CLI::IsMember({"csv"}));
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
-    CLI::Option* json = command.add_flag("--json", options.json, "The same as --format json");
+    CLI::Option* json = command.add_flag("--json", options.json, "Print it as JSON");
     format->excludes(json);
     for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
     accept->excludes(revoke);

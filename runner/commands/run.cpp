@@ -14,6 +14,7 @@
 #include "output/comparison_text.hpp"
 #include "output/error_output.hpp"
 #include "output/progress.hpp"
+#include "output/reproduce.hpp"
 #include "output/run_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
@@ -194,7 +195,8 @@ std::optional<Comparison> Execution::judge(const SessionTask& task, std::int64_t
     try {
         if (run == 0 && task.gate.rules.empty()) return std::nullopt;
         if (run == 0) throw Error("the gate was not judged, because the run is not recorded");
-        std::optional<Comparison> comparison = verdict_of_batch(options_.session.output_folder, run);
+        std::optional<Comparison> comparison =
+            verdict_of_batch(options_.session.output_folder, run, reproducing_command);
         if (comparison) code = std::max(code, exit_code_of(*comparison, options_.strict));
         return comparison;
     } catch (const Error& error) {
@@ -233,7 +235,9 @@ int Execution::run(const SessionTask& task, bool is_batch) {
         });
     progress.finish();
     session_.on_warning(warn_);
-    int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done : some_failed;
+    int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done
+               : report.has_fault()                                                       ? our_fault
+                                                                                          : some_failed;
     std::optional<Comparison> comparison;
     if (is_batch && !report.interrupted) comparison = judge(task, number, code);
 

@@ -80,7 +80,7 @@ std::string comparison_text(const Comparison& comparison, const std::string& met
         text += "\nTo reproduce\n";
         for (std::size_t i = 0; i < std::min(commands.size(), most_commands); ++i) text += commands[i] + "\n";
         if (commands.size() > most_commands)
-            text += fmt::format("and {} more; --format json has all\n", commands.size() - most_commands);
+            text += fmt::format("and {} more; --json has all\n", commands.size() - most_commands);
     }
     return text;
 }

@@ -33,11 +33,13 @@ Error with_option(const Error& error) {
                 return "'scanmill convert --drop-invalid IN OUT' writes a copy without them";
             case Remedy::drop_invalid_rows:
                 return "or drop them while reading: --invalid drop on the command line, `invalid: drop` in a workflow "
-                       "or "
-                       "batch";
+                       "or batch";
             case Remedy::choose_output_folder: return "on the command line: -o DIR";
             case Remedy::choose_cache_folder: return "on the command line: --cache DIR";
             case Remedy::run_without_workers: return "on the command line: -j 0";
+            case Remedy::declare_truth_unit: return "with scanmill measure: --truth-unit mm";
+            case Remedy::move_to_frame: return "the filter apply-transform moves it";
+            case Remedy::mesh_points: return "the filters sculpt and region-grow mesh points";
         }
         return "";
     }();

@@ -41,6 +41,20 @@ TEST_F(Batch, TwentyScansUnderFourVariants_ThreePoisoned_LoseOnlyThose) {
     EXPECT_EQ(count(again["steps"], "outcome", "failed"), 12u);
 }
 
+TEST_F(Batch, UndeclaredMetric_EndsWith3AndNamesFilterAndMetric) {
+    write_workflow("1");
+    write_scans("good", 2);
+    write_batch("scans/good_01.xyz, {path: scans/good_02.xyz, set: {mode: undeclared-metric}}");
+    for (const char* jobs : {"0", "1"}) {
+        const ProgramResult ran = run_batch({"-j", jobs, "--no-cache"});
+        EXPECT_EQ(ran.exit_code, 3);
+        EXPECT_THAT(ran.err, AllOf(HasSubstr("test-step"), HasSubstr("'stray'")));
+    }
+    const Json run = recorded(2);
+    EXPECT_EQ(count(run["cells"], "cause", "fault"), 1u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 1u);
+}
+
 TEST_F(Batch, CommentKeyOrderAndFileName_RunNothingAgain) {
     write_workflow();
     write_scans("scan", 3);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "scanmill/formats/files.hpp"
@@ -38,6 +39,19 @@ TEST(Command, Help_GoesToStdoutAndIsNoError) {
 }
 
 TEST(Command, Version_IsPrinted) { EXPECT_THAT(scanmill_program({"--version"}).out, HasSubstr("scanmill 0.")); }
+
+/// The status of the program when its reader has gone, which a shell reports as 128 and the number of the signal.
+TEST(Command, OutputThatNobodyReads_EndsQuietly) {
+    for (const char* caller : {"", "trap '' PIPE; "}) {
+        const TemporaryFolder folder;
+        const std::string command = std::string(caller) + "{ sleep 0.3; '" + program_file() + "' list 2> '" +
+                                    (folder / "err").string() + "'; echo $? > '" + (folder / "code").string() +
+                                    "'; } | true";
+        ASSERT_EQ(std::system(command.c_str()), 0);
+        EXPECT_EQ(content_of(folder / "err"), "");
+        EXPECT_EQ(content_of(folder / "code"), "141\n");
+    }
+}
 
 TEST(Command, BadArguments_EndWith2AndAHint) {
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
@@ -192,8 +206,7 @@ TEST(Command, CheckPlan_ShowsTheWiringInThreeForms) {
                 AllOf(HasSubstr("points <- scan"), HasSubstr("tets <- delaunay"), HasSubstr("{scan}.stl <- surface")));
     EXPECT_THAT(scanmill_program({"check", "--plan", "--format", "dot", shipped("quickstart.yaml")}).out,
                 HasSubstr("digraph"));
-    const json plan =
-        json::parse(scanmill_program({"check", "--plan", "--format", "json", shipped("quickstart.yaml")}).out);
+    const json plan = json::parse(scanmill_program({"check", "--plan", "--json", shipped("quickstart.yaml")}).out);
     EXPECT_EQ(plan.at("files").at(0).at("plan").at("steps").size(), 5u);
 }
 

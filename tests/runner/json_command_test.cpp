@@ -66,7 +66,7 @@ TEST(Json, ShowExample_CarriesTheWorkflow) {
 }
 
 TEST(Json, PlanFormatWithoutPlan_IsRefused) {
-    const ProgramResult result = scanmill_program({"check", shipped("quickstart.yaml"), "--format", "json"});
+    const ProgramResult result = scanmill_program({"check", shipped("quickstart.yaml"), "--format", "dot"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr("--plan"));
 }

@@ -133,7 +133,7 @@ TEST_F(ReportCommand, Formats_AreWhatTheySay) {
     record(run_of_one(1, 0.5, rules));
     accept("1");
     record(run_of_one(2, 0.75, rules));
-    const ProgramResult as_json = report({"--format", "json"});
+    const ProgramResult as_json = report({"--json"});
     EXPECT_EQ(as_json.exit_code, 4);
     EXPECT_EQ(json::parse(as_json.out)["report"]["verdict"], "regressed");
     EXPECT_EQ(report({"--json"}).out, as_json.out);
@@ -184,7 +184,7 @@ TEST_F(ReportCommand, Acceptances_NeedANameAndAReason) {
     }
     EXPECT_THAT(report({"--who", "Ann"}).err, HasSubstr("--who and --why are for --accept and --revoke"));
     EXPECT_EQ(report({"--accept", "--revoke", "--who", "A", "--why", "x"}).exit_code, 2);
-    EXPECT_EQ(report({"--accept", "--format", "json", "--who", "A", "--why", "x"}).exit_code, 2);
+    EXPECT_EQ(report({"--accept", "--json", "--who", "A", "--why", "x"}).exit_code, 2);
     EXPECT_THAT(report().out, StartsWith("nightly: new\n")) << "nothing was accepted";
 }
 
@@ -193,7 +193,7 @@ TEST_F(ReportCommand, WrongOptions_AreRefused) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--format", "yaml"},
                                                       {"--table", "xls"},
                                                       {"--run", "x"},
-                                                      {"--table", "csv", "--format", "json"},
+                                                      {"--table", "csv", "--json"},
                                                       {"--json", "--format", "text"}})
         EXPECT_EQ(report(arguments).exit_code, 2) << arguments[0];
     EXPECT_THAT(report({"--format", "yaml"}).err, AllOf(HasSubstr("junit"), HasSubstr("scanmill report --help")));
@@ -207,8 +207,8 @@ TEST_F(ReportCommand, HostileNames_StayOnTheirLines) {
         cell.failure.error = "broken '" + name + "'";
     }
     record(run, "out", "failed");
-    for (const std::vector<std::string>& format : std::vector<std::vector<std::string>>{
-             {}, {"--format", "json"}, {"--format", "junit"}, {"--format", "markdown"}}) {
+    for (const std::vector<std::string>& format :
+         std::vector<std::vector<std::string>>{{}, {"--json"}, {"--format", "junit"}, {"--format", "markdown"}}) {
         const ProgramResult result = report(format);
         EXPECT_EQ(result.exit_code, 1);
         EXPECT_THAT(result.out, AllOf(Not(HasSubstr("\x1b")), HasSubstr(std::string(200, 'x'))));

@@ -28,9 +28,17 @@ Error&& Error::remedy(Remedy remedy) && {
     return std::move(*this);
 }
 
+Error&& Error::expected(std::string_view forms) && {
+    finding_ = sentence_;
+    sentence_.append("; expected ").append(forms);
+    compose();
+    return std::move(*this);
+}
+
 Error Error::reworded(std::string sentence) const {
     Error other = *this;
     other.sentence_ = std::move(sentence);
+    other.finding_.clear();
     other.compose();
     return other;
 }

@@ -10,13 +10,14 @@
 
 #include <exception>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace scanmill {
 
-/// A setting of the program that could help. Core and engine do not name command-line options: the program that calls
-/// them adds its option for a remedy to the hint.
+/// A setting or filter of the program that could help. Core and engine name neither options nor filters: the program
+/// that calls them adds its own for a remedy to the hint.
 enum class Remedy {
     none,
     name_scans,
@@ -27,7 +28,10 @@ enum class Remedy {
     drop_invalid_rows,    ///< of a scan while it is read
     choose_output_folder,
     choose_cache_folder,
-    run_without_workers
+    run_without_workers,
+    declare_truth_unit,
+    move_to_frame,
+    mesh_points  ///< of a mesh that is not a surface
 };
 
 class __attribute__((visibility("default"))) Error : public std::exception {
@@ -44,10 +48,14 @@ public:
     /// For `throw Error(...).hint(...)`.
     Error&& hint(std::string text) &&;
     Error&& remedy(Remedy remedy) &&;
+    /// Ends the sentence with "; expected <forms>". The part before is the finding.
+    Error&& expected(std::string_view forms) &&;
     /// The same error with another sentence.
     Error reworded(std::string sentence) const;
 
     const std::string& sentence() const { return sentence_; }
+    /// The sentence without what was expected.
+    const std::string& finding() const { return finding_.empty() ? sentence_ : finding_; }
     const std::vector<std::string>& frames() const { return frames_; }
     const std::string& hint() const { return hint_; }
     Remedy remedy() const { return remedy_; }
@@ -57,6 +65,7 @@ public:
 private:
     void compose();
     std::string sentence_;
+    std::string finding_;  // empty: the sentence
     std::vector<std::string> frames_;
     std::string hint_;
     Remedy remedy_ = Remedy::none;

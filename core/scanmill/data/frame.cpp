@@ -46,7 +46,8 @@ void require_same_frame(const Frame& first, std::string_view one, const Frame& s
             .hint("convert one of them with `scanmill convert` (u: a unit that is not declared)");
     if (!first.name.empty() && !second.name.empty() && first.name != second.name)
         throw Error("{} in the frame '{}', {} in '{}'; both need one frame", one, first.name, other, second.name)
-            .hint("move one of them with `apply-transform`, or give both files one frame name");
+            .hint("move one of them into the other's frame, or give both files one frame name")
+            .remedy(Remedy::move_to_frame);
 }
 
 }  // namespace scanmill

@@ -82,14 +82,16 @@ Array<u32> opposites(const TriangleMesh& mesh) {
             crowded.first[2].number / 3, crowded.edges)
             .hint(
                 "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its "
-                "own vertices; or mesh its points again with sculpt or region-grow");
+                "own vertices; or mesh its points again")
+            .remedy(Remedy::mesh_points);
     if (alike.edges > 0)
         throw Error(
             "triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
             alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
             .hint(
-                "reverse the triangles that face the other way, or mesh the points again with sculpt or region-grow; a "
-                "one-sided surface (a Moebius band) must be cut open");
+                "reverse the triangles that face the other way, or mesh the points again; a one-sided surface (a "
+                "Moebius band) must be cut open")
+            .remedy(Remedy::mesh_points);
     return opposite;
 }
 

@@ -35,7 +35,7 @@ Dimensioned split(std::string_view text, std::string_view noun, std::string_view
     if (text.size() > 1 && *begin == '+' && begin[1] != '-') ++begin;
     const auto [rest, error] = std::from_chars(begin, end, result.amount);
     if (error != std::errc() || !std::isfinite(result.amount))
-        throw Error("'{}' is not {}; expected {}", text, noun, examples);
+        throw Error("'{}' is not {}", text, noun).expected(examples);
     result.suffix = {rest, end};
     result.suffix.remove_prefix(std::min(result.suffix.find_first_not_of(' '), result.suffix.size()));
     return result;
@@ -43,7 +43,7 @@ Dimensioned split(std::string_view text, std::string_view noun, std::string_view
 
 Dimensioned split_with_unit(std::string_view text, std::string_view noun, std::string_view examples) {
     const Dimensioned parts = split(text, noun, examples);
-    if (parts.suffix.empty()) throw Error("'{}' has no unit; expected {}", text, examples);
+    if (parts.suffix.empty()) throw Error("'{}' has no unit", text).expected(examples);
     return parts;
 }
 
@@ -102,8 +102,10 @@ Length Length::parse(std::string_view text) {
     if (const std::optional<LengthUnit> unit = length_unit(suffix))
         return {amount, static_cast<In>(static_cast<int>(*unit) + static_cast<int>(relative_suffixes.size()) - 1)};
     if (suffix == "%")
-        throw Error("'{}' has no reference; expected {} %diag, a share of the bounding box's diagonal", text, amount);
-    throw Error("'{}' is not a unit of length; expected u, %diag, spacing, {}", suffix, length_unit_symbols());
+        throw Error("'{}' has no reference", text)
+            .expected(fmt::format("{} %diag, a share of the bounding box's diagonal", amount));
+    throw Error("'{}' is not a unit of length", suffix)
+        .expected(fmt::format("u, %diag, spacing, {}", length_unit_symbols()));
 }
 
 double Angle::in_radians() const { return degrees_ ? amount_ * (std::numbers::pi / 180) : amount_; }
@@ -114,7 +116,7 @@ Angle Angle::parse(std::string_view text) {
     const auto [amount, suffix] = split_with_unit(text, "an angle", angle_examples);
     if (suffix == "deg") return degrees(amount);
     if (suffix == "rad") return radians(amount);
-    throw Error("'{}' is not a unit of angle; expected deg or rad", suffix);
+    throw Error("'{}' is not a unit of angle", suffix).expected("deg or rad");
 }
 
 std::string Ratio::text() const { return number_text(amount_) + (percent_ ? " %" : ""); }
@@ -123,7 +125,7 @@ Ratio Ratio::parse(std::string_view text) {
     const auto [amount, suffix] = split(text, "a ratio", ratio_examples);
     if (suffix == "%") return percent(amount);
     if (suffix.empty()) return fraction(amount);
-    throw Error("'{}' is not a ratio; expected {}", text, ratio_examples);
+    throw Error("'{}' is not a ratio", text).expected(ratio_examples);
 }
 
 }  // namespace scanmill

@@ -18,9 +18,14 @@ bool is_marked_text(std::string_view bytes) {
     return text.size() < head.size() && (text.starts_with("ply") || text.find('\0') == std::string_view::npos);
 }
 
+/// `options.on_warning`, with the file's name before each sentence if they ask for it.
+OnWarning warnings_of(const std::filesystem::path& path, const ReadOptions& options) {
+    return options.names_file ? warnings_with_file_name(path, options.on_warning) : options.on_warning;
+}
+
 LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     if (file.bytes.empty()) throw Error("is empty (0 bytes)");
-    const OnWarning on_warning = warnings_with_file_name(file.path, options.on_warning);
+    const OnWarning on_warning = warnings_of(file.path, options);
     const std::optional<Array<char>> content = unwrapped(file.bytes, on_warning);
     FileBytes plain{file.path, content ? std::string_view(content->data(), content->size()) : file.bytes};
     if (is_marked_text(plain.bytes)) plain.bytes = without_byte_order_mark(plain.bytes);
@@ -90,7 +95,7 @@ std::shared_ptr<const PointCloud> points_in(const LoadedFile& loaded, const std:
     const TriangleMesh* mesh = loaded.value.find<TriangleMesh>();
     if (!mesh)
         throw Error("'{}': points are needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
-    warn(options.on_warning, "'{}': read as points; {} left out", path.string(),
+    warn(warnings_of(path, options), "read as points; {} left out",
          count_text(mesh->triangles.size(), "triangle was", "triangles were"));
     return std::make_shared<const PointCloud>(points_of(*mesh));
 }
@@ -106,7 +111,7 @@ Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesys
     const std::shared_ptr<const PointCloud> cloud = points_in(loaded, path, options);
     Cleaned<PointCloud> result = with_file_name(path, [&] { return accepted(*cloud, rule, loaded.nan_is_no_return); });
     if (result.points > 0)
-        warn(options.on_warning, "'{}': {} of {} {} dropped: {}", path.string(), result.points,
+        warn(warnings_of(path, options), "{} of {} {} dropped: {}", result.points,
              count_text(cloud->size(), "point", "points"), by_count(result.points, "was", "were"),
              loaded.nan_is_no_return ? "no return, or a coordinate that is too far"
                                      : "a coordinate is NaN, infinite or too far");
@@ -131,8 +136,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
         if (wrapping_of(file->bytes()) != Wrapping::none) return nullptr;
         const Format& format = format_of({path, file->bytes()});
         if (format.open_stream)
-            return format.open_stream(std::move(file),
-                                      {warnings_with_file_name(path, options.on_warning), options.unit}, threads,
+            return format.open_stream(std::move(file), {warnings_of(path, options), options.unit}, threads,
                                       on_positions);
     } catch (const Error&) {
         // read_points() throws it again, with the file's name.

@@ -14,7 +14,6 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/compare/costs.hpp"
-#include "scanmill/compare/reproduce.hpp"
 
 namespace scanmill {
 
@@ -477,7 +476,7 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
     const bool has_costs = std::ranges::any_of(run.cells, [](const CellRecord& cell) { return !cell.costs.empty(); });
     if (gates_costs && !has_costs)
         comparison.notes.emplace_back(
-            "no costs were judged: no cell ran all of its steps; run with --no-cache to judge them");
+            "no costs were judged: no cell ran all of its steps; run without the cache to judge them");
     if (!baseline) return;
     const RunStart &now = run.start, &then = baseline->run.start;
     if (now.machine != then.machine)
@@ -495,7 +494,7 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
 
 }  // namespace
 
-Comparison compare(const RunDetails& run, const Baseline* baseline) {
+Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command) {
     Comparison comparison;
     comparison.batch = run.start.workflow;
     comparison.file = run.start.file;
@@ -522,7 +521,7 @@ Comparison compare(const RunDetails& run, const Baseline* baseline) {
         judged.scan = std::get<1>(cells.key(i));
         const bool is_fine = judged.verdict == Verdict::passed || judged.verdict == Verdict::is_new;
         if (accepted && !is_fine) judged.causes = causes_of(cell, steps, *accepted, accepted_steps);
-        if (!is_fine) judged.command = reproducing_command(run, cell, judged.scan);
+        if (!is_fine && command) judged.command = command(run, cell, judged.scan);
     }
     for (const std::size_t i : in_plan_order(accepted_run.cells)) {
         if (cells.find(accepted_cells.key(i))) continue;

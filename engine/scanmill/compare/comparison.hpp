@@ -7,6 +7,7 @@
 /// whatever the machine and the version, costs with those of earlier runs on the same machine (costs.hpp).
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -113,7 +114,7 @@ struct CellComparison {
     std::vector<CostRecord> passes;  ///< of this run
     std::vector<std::string> moved;  ///< outputs of an earlier run that were moved aside when the cell failed
     double seconds = 0;
-    std::string command;  ///< reproduces the cell in a shell; empty for cells that passed
+    std::string command;  ///< reproduces the cell; empty for cells that passed
 };
 constexpr auto fields(const CellComparison*) {
     using R = CellComparison;
@@ -172,9 +173,12 @@ struct Baseline {
     std::vector<PastCosts> costs;  ///< of the runs since then, before the compared one, on its machine
 };
 
+/// The command that runs the cell again; `scan`: its name from the batch's folder.
+using CommandFor = std::function<std::string(const RunDetails& run, const CellRecord& cell, const std::string& scan)>;
+
 /// Without a baseline all cells that are not failed or doubtful are new. Throws Error for a recorded gate that cannot
-/// be read. Cost: linear in the recorded rows.
-Comparison compare(const RunDetails& run, const Baseline* baseline);
+/// be read. `command` is called for the cells that did not pass. Cost: linear in the recorded rows.
+Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command = {});
 
 /// One entry of what changed, over all cells.
 struct RankedChange {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 
-#include "scanmill/compare/detail/utf8.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/tables.hpp"
+#include "scanmill/compare/utf8.hpp"
 
 namespace scanmill {
 

@@ -100,13 +100,14 @@ RecordedRun RecordedRun::parse(const std::string& text) {
 
 std::int64_t ended_run(const RunRecords& records, const RecordedRun& which) { return ended_run(records.runs(), which); }
 
-Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against) {
+Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against,
+                            const CommandFor& command) {
     const RunRecords records = records_in(which.folder);
     const std::vector<RunSummary> runs = records.runs();
     const std::int64_t id = ended_run(runs, which);
     const RunDetails run = records.run(id);
     const std::optional<Baseline> baseline = baseline_for(run, records, which.folder, against);
-    Comparison comparison = compare(run, baseline ? &*baseline : nullptr);
+    Comparison comparison = compare(run, baseline ? &*baseline : nullptr, command);
     if (!which.run)
         for (const RunSummary& later : runs)
             if (later.id > id)
@@ -115,8 +116,8 @@ Comparison compare_recorded(const RecordedRun& which, const std::optional<Record
     return comparison;
 }
 
-std::optional<Comparison> verdict_of_batch(const fs::path& folder, std::int64_t run) {
-    Comparison comparison = compare_recorded({folder, run}, std::nullopt);
+std::optional<Comparison> verdict_of_batch(const fs::path& folder, std::int64_t run, const CommandFor& command) {
+    Comparison comparison = compare_recorded({folder, run}, std::nullopt, command);
     if (!comparison.accepted && comparison.gate.rules.empty()) return std::nullopt;
     return comparison;
 }

@@ -23,10 +23,12 @@ struct RecordedRun {
 /// Compares a run, or the last that ended, with `against`: without a number the run that was accepted there for the
 /// same batch, else the last one of the batch that ended; without `against` the accepted run in the same folder, if
 /// there is one. Throws Error for a folder without records, without runs, an unknown run and one that has not ended.
-Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against);
+Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against,
+                            const CommandFor& command);
 
 /// The comparison at the end of a batch. Nothing: it has no gate, and no run was accepted.
-std::optional<Comparison> verdict_of_batch(const std::filesystem::path& folder, std::int64_t run);
+std::optional<Comparison> verdict_of_batch(const std::filesystem::path& folder, std::int64_t run,
+                                           const CommandFor& command);
 
 /// The records of the folder, for acceptances. Throws Error for a folder without records.
 RunRecords records_to_change(const std::filesystem::path& folder);

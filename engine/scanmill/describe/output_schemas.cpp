@@ -101,12 +101,11 @@ Json check_schema() {
          {"diagnostics", list_of(diagnostic)},
          {"plan?", plan()},
          {"further-plans?", described("Of a workflow that a batch runs with different inputs.", list_of(plan()))}});
-    return document("scanmill check --json, and run or batch of a file with errors",
-                    object({{"files", list_of(file)}}));
+    return document("scanmill check, and run or batch of a file with errors", object({{"files", list_of(file)}}));
 }
 
 Json error_schema() {
-    return document("The error of any command with --json",
+    return document("The error of any command",
                     object({{"error", object({{"message", text()},
                                               {"where", described("The innermost first.", list_of(text()))},
                                               {"hint?", text()}})}}));
@@ -114,14 +113,13 @@ Json error_schema() {
 
 Json list_schema() {
     const Json unusable = object({{"name", text()}, {"manifest", text()}, {"reason", text()}});
-    return document("scanmill list --json",
-                    object({{"filters", list_of(declaration())}, {"unusable", list_of(unusable)}}));
+    return document("scanmill list", object({{"filters", list_of(declaration())}, {"unusable", list_of(unusable)}}));
 }
 
-Json show_schema() { return document("scanmill show FILTER --json", object({{"filter", declaration()}})); }
+Json show_schema() { return document("scanmill show FILTER", object({{"filter", declaration()}})); }
 
 Json show_example_schema() {
-    return document("scanmill show FILTER --example --json",
+    return document("scanmill show FILTER, the example",
                     object({{"filter", text()}, {"example", described("A workflow.", text())}}));
 }
 
@@ -152,25 +150,25 @@ Json info_schema() {
     Json either{{"if", {{"required", Json::array({"error"})}}},
                 {"then", object({{"file", text()}, {"error", text()}})},
                 {"else", std::move(file)}};
-    return document("scanmill info --json", object({{"files", list_of(std::move(either))}}));
+    return document("scanmill info", object({{"files", list_of(std::move(either))}}));
 }
 
 Json measure_schema() {
-    return document("scanmill measure --json", object({{"unit", length_unit_or_null()},
-                                                       {"metrics", metrics()},
-                                                       {"units", described("By metric.", map_of(unit()))},
-                                                       {"mesh", text()},
-                                                       {"truth", text()},
-                                                       {"warnings", list_of(text())}}));
+    return document("scanmill measure", object({{"unit", length_unit_or_null()},
+                                                {"metrics", metrics()},
+                                                {"units", described("By metric.", map_of(unit()))},
+                                                {"mesh", text()},
+                                                {"truth", text()},
+                                                {"warnings", list_of(text())}}));
 }
 
 Json cache_info_schema() {
     return document(
-        "scanmill cache info --json",
+        "scanmill cache info",
         object({{"folder", text()}, {"steps", count()}, {"values", count()}, {"bytes", count()}, {"limit", bytes()}}));
 }
 
-Json cache_clear_schema() { return document("scanmill cache clear --json", object({{"removed", bytes()}})); }
+Json cache_clear_schema() { return document("scanmill cache clear", object({{"removed", bytes()}})); }
 
 Json dry_run_schema() {
     const Json input = object({{"port", text()},
@@ -185,7 +183,7 @@ Json dry_run_schema() {
                               {"cached", flag()},
                               {"why?", described("Why it will run.", text())}});
     return document(
-        "scanmill run or batch --dry-run --json",
+        "scanmill run or batch, the dry run",
         object(
             {{"nodes", list_of(node)},
              {"cells", list_of(joined(cell(), object({{"nodes", list_of(count())}, {"outputs", list_of(text())}})))}}));
@@ -196,14 +194,14 @@ Json document_of(const char* title) {
     return schema::document(title, JsonForm<T>::schema());
 }
 
-Json run_schema() { return document_of<RunDocument>("scanmill run --json"); }
-Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR --json"); }
-Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID --json"); }
+Json run_schema() { return document_of<RunDocument>("scanmill run"); }
+Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR"); }
+Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID"); }
 
 Json report_schema() {
     Json report = schema::object();
     schema::add(report, "report", JsonForm<ReportDocument>::schema());
-    return schema::document("scanmill report DIR --json", report);
+    return schema::document("scanmill report DIR", report);
 }
 
 /// One line of a batch: `event` decides on the members.
@@ -219,7 +217,7 @@ Json batch_event_schema() {
                                                    {"verdict", JsonForm<VerdictEvent>::schema()},
                                                    {"run-ended", JsonForm<RunEndedEvent>::schema()}};
     Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
-                {"title", "One line of scanmill batch --json"},
+                {"title", "One line of scanmill batch"},
                 {"type", "object"},
                 {"required", {"event", "at"}},
                 {"properties", {{"event", {{"enum", Json::array()}}}}},

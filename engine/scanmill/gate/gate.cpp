@@ -53,9 +53,6 @@ double absolute_amount(std::string_view text, Unit unit, const LengthScale& scal
     return number_amount(text);
 }
 
-/// The sentence up to what it expects, which is not what a rule expects.
-std::string finding_of(const Error& error) { return error.sentence().substr(0, error.sentence().find("; expected")); }
-
 }  // namespace
 
 Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal) {
@@ -80,7 +77,7 @@ Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, 
         throw;  // the rule is right, but not for this scan
     } catch (const Error& error) {
         if (error.remedy() == Remedy::declare_unit) throw;
-        throw Error("{}; expected {}", finding_of(error), forms_of(unit));
+        throw Error(error.finding()).expected(forms_of(unit));  // other forms than those of a parameter
     }
     return tolerance;
 }

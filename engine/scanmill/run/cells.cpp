@@ -14,6 +14,7 @@ std::string frame_of(const RunGraph& graph, std::size_t index) {
     const RunNode& node = graph.nodes[index];
     const PlannedStep* step = graph.step(node);
     if (!step) return fmt::format("while reading '{}'", node.leaf.file.string());
+    if (step->position.line == 0) return fmt::format("in step '{}'", step->label);  // it is in no file
     return fmt::format("in step '{}' ({}:{}:{})", step->label,
                        step->file.empty() ? graph.plans[node.plan]->workflow.file : step->file, step->position.line,
                        step->position.column);

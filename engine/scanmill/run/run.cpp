@@ -178,8 +178,8 @@ private:
         JobReport done;
         done.node.origin = Origin::cached;
         done.node.outcome = Outcome::ok;
-        scanmill::adopt(*prediction_[index].cached, graph_.step(node), node.step ? "" : path_prefix(node.leaf.file),
-                        done.node);
+        scanmill::adopt(*prediction_[index].cached, graph_.step(node), done.node);
+        if (!node.step) done.node.warnings = warnings_about(node.leaf.file, std::move(done.node.warnings));
         for (const std::string& warning : done.node.warnings) notify(&RunObserver::node_warning, node, warning);
         finish_node(index, std::move(done));
     }
@@ -375,7 +375,7 @@ private:
             report = std::move(done.node);
         } else {  // only its expectations were checked
             report = {};
-            scanmill::adopt(*predicted.cached, graph_.step(node), "", report);
+            scanmill::adopt(*predicted.cached, graph_.step(node), report);
             report.attempts = done.node.attempts;
             report.effort = std::move(done.node.effort);
             for (const std::string& warning : report.warnings) notify(&RunObserver::node_warning, node, warning);

@@ -35,4 +35,8 @@ Outcome RunReport::outcome() const {
     return worst;
 }
 
+bool RunReport::has_fault() const {
+    return std::ranges::any_of(cells, [](const CellReport& cell) { return cell.failure.cause == Cause::fault; });
+}
+
 }  // namespace scanmill

@@ -43,10 +43,11 @@ enum class Cause {
     time,         ///< the time limit was exceeded
     signal,       ///< a signal ended the worker process
     exit,         ///< the worker process exited
-    output        ///< a file could not be written
+    output,       ///< a file could not be written
+    fault         ///< the program's own: a filter broke its declaration
 };
-constexpr std::array<std::string_view, 9> names_of(const Cause*) {
-    return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output"};
+constexpr std::array<std::string_view, 10> names_of(const Cause*) {
+    return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output", "fault"};
 }
 
 struct Failure {
@@ -141,6 +142,8 @@ struct RunReport {
 
     /// That of its worst cell; skipped cells count as failed; ok without cells.
     Outcome outcome() const;
+    /// Whether a cell failed for a fault of the program.
+    bool has_fault() const;
 };
 
 /// The doubts about these outputs and about all values that they are made from, each with the label of its step.

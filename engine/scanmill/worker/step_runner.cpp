@@ -97,7 +97,8 @@ std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const Mea
             .hint(*unit == LengthUnit::unknown
                       ? "declare the scan's unit: `unit:` at the scan or at the workflow's input"
                       : "declare the truth's unit: `truth: {path: FILE, unit: mm}` in a batch, or `unit:` at the "
-                        "workflow's input");
+                        "workflow's input")
+            .remedy(*unit == LengthUnit::unknown ? Remedy::declare_unit : Remedy::declare_truth_unit);
     for (StepInput& input : inputs)
         if (input.port == ports.truth) input.value = in_unit(input.value, *unit);
     return inputs;
@@ -127,13 +128,19 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, LengthU
     return result;
 }
 
-void require_whole(const Outputs& outputs, const FilterSpec& spec) {
+void require_declared(const Outputs& outputs, const Metrics& metrics, const FilterSpec& spec) {
+    const auto fail = [&](std::string what) {
+        throw BrokenDeclaration(fmt::format("the filter {} {}", spec.name, what));
+    };
+    for (const Metric& metric : metrics.values)
+        if (!spec.metric(metric.name))
+            fail(fmt::format("reported the metric '{}', which it does not declare", metric.name));
     for (const PortSpec& port : spec.outputs) {
         const Value* value = outputs.find(port.name);
-        if (!value) throw Error("the filter {} did not give its declared output '{}'", spec.name, port.name);
+        if (!value) fail(fmt::format("did not give its declared output '{}'", port.name));
         if (kind_of(*value) != port.kind)
-            throw Error("the filter {} gave {} at '{}', which it declares as {}", spec.name, name_of(kind_of(*value)),
-                        port.name, name_of(port.kind));
+            fail(fmt::format("gave {} at '{}', which it declares as {}", name_of(kind_of(*value)), port.name,
+                             name_of(port.kind)));
         port.kind.info().require_usable(value->object());
     }
 }
@@ -151,6 +158,7 @@ ReadOptions reading(const LeafSource& leaf, const OnWarning& on_warning) {
     ReadOptions options;
     options.on_warning = on_warning;
     options.unit = leaf.unit;
+    options.names_file = false;
     return options;
 }
 
@@ -158,8 +166,7 @@ ReadOptions reading(const LeafSource& leaf, const OnWarning& on_warning) {
 bool take_declared_name(const LeafSource& leaf, std::string& name, const OnWarning& on_warning) {
     if (leaf.frame.empty() || name == leaf.frame) return false;
     if (!name.empty())
-        on_warning(fmt::format("'{}': the file's frame '{}' was renamed to '{}', as declared", leaf.file.string(), name,
-                               leaf.frame));
+        on_warning(fmt::format("the file's frame '{}' was renamed to '{}', as declared", name, leaf.frame));
     name = leaf.frame;
     return true;
 }
@@ -200,7 +207,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
                 if (reason.length() == read.length()) throw reason;
             throw;
         }
-        require_whole(outputs, step.spec);
+        require_declared(outputs, context.metrics(), step.spec);
         record();
         return outputs;
     } catch (...) {

@@ -92,6 +92,8 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
         fail(failure.cause, failure.error);
     } catch (const Error& error) {
         fail(is_write ? Cause::output : Cause::refused, error);
+    } catch (const BrokenDeclaration& error) {
+        fail(Cause::fault, Error("an error of the program: {}", error.what()));
     } catch (const std::bad_alloc&) {
         fail(Cause::memory, out_of_memory(job.memory_limit, use.until_now().peak_memory));
     } catch (const std::exception& error) {
@@ -167,7 +169,8 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     if (uses_cache(work.caching))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
     if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
-    if (report.node.origin == Origin::ran) store(job, work.caching, run_key, outputs, seconds, report);
+    if (report.node.origin == Origin::ran)
+        store(job, work.caching, run_key, outputs, report.node.warnings, seconds, report);
     if (!step.expectations.empty())
         check_expectations(step, *outputs.find(step.spec.outputs.front().name), report.node);
 }
@@ -233,10 +236,10 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     CountedWarnings warnings;
     const auto on_warning = [&](const std::string& text) { warnings.add(text); };
     const auto report_warnings = [&] {
-        report.node.warnings = warnings.sentences();
+        report.node.warnings = warnings_about(work.leaf.file, warnings.sentences());
         for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     };
-    if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report_warnings, report)) return;
+    if (work.leaf.is_streamed && read_as_stream(job, work, listener, warnings, report_warnings, report)) return;
     report.was_read_whole = work.leaf.is_streamed;
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
@@ -257,13 +260,14 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     if (dropped > 0) report.node.properties.set("dropped-points", static_cast<double>(dropped), Unit::count);
     if (const PointCloud* cloud = value.find<PointCloud>())
         add_stray_points(robust_box(cloud->positions.span()), report.node.properties);
-    store(job, work.caching, work.caching.plan_key, Outputs().set("", std::move(value)), seconds_since(start), report);
+    store(job, work.caching, work.caching.plan_key, Outputs().set("", std::move(value)), warnings.sentences(),
+          seconds_since(start), report);
 }
 
 /// Opens the scan as a stream, and stores in the cache the result that reading its value would give. False if the file
 /// must be read as a whole.
 bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
-                               const OnWarning& on_warning, const std::function<void()>& report_warnings,
+                               CountedWarnings& warnings, const std::function<void()>& report_warnings,
                                JobReport& report) {
     const auto start = std::chrono::steady_clock::now();
     const JobCaching& caching = work.caching;
@@ -278,6 +282,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
         check_cancelled();
         if (is_hashed) content.add_world(positions);
     };
+    const auto on_warning = [&](const std::string& text) { warnings.add(text); };
     const auto scan = open(job.node, work.leaf, job.threads, uses_cache(caching), on_warning, on_positions);
     if (!scan) return false;
     report_warnings();
@@ -293,7 +298,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     if (scan_->check) scan_->check->require();
     report.result.outputs = std::move(outputs);
     add_kept(report);
-    store(job, caching, caching.plan_key, {}, seconds_since(start), report);
+    store(job, caching, caching.plan_key, {}, warnings.sentences(), seconds_since(start), report);
     return true;
 }
 
@@ -331,7 +336,10 @@ Value Workbench::fetch(const JobInput& input, JobReport& report) const {
     return *value;
 }
 
-std::string path_prefix(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
+std::vector<std::string> warnings_about(const std::filesystem::path& file, std::vector<std::string> warnings) {
+    for (std::string& warning : warnings) warning.insert(0, "'" + file.string() + "': ");
+    return warnings;
+}
 
 // Results and values that are stored, and found in the cache.
 
@@ -357,7 +365,7 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
         outputs.set(port, std::move(*value));
     }
     cache_->keep_run_key(work.caching.plan_key, run_key);
-    adopt(*result, work.step.get(), "", report.node);
+    adopt(*result, work.step.get(), report.node);
     report.node.origin = Origin::same_inputs;
     for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     report.result = std::move(*result);
@@ -367,7 +375,7 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
 
 /// Stores the result, and the values that are worth it or that other tasks need.
 void Workbench::store(const Job& job, const JobCaching& caching, const std::string& run_key, const Outputs& outputs,
-                      double seconds, JobReport& report) {
+                      std::vector<std::string> warnings, double seconds, JobReport& report) {
     store_values(job, caching, outputs, caching.inputs_cost + seconds, report);
     if (!uses_cache(caching)) return;
     StepResult& result = report.result;
@@ -377,11 +385,7 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
             result.resolved.values.emplace_back(name, value);
     result.metrics = report.node.metrics;
     result.properties = report.node.properties;
-    // Files with equal content share the result, so warnings are stored without the file's name.
-    const auto* reading = std::get_if<ReadWork>(&job.work);
-    const std::string prefix = reading ? path_prefix(reading->leaf.file) : "";
-    for (const std::string& warning : report.node.warnings)
-        result.warnings.push_back(warning.starts_with(prefix) ? warning.substr(prefix.size()) : warning);
+    result.warnings = std::move(warnings);
     result.doubts = report.node.doubts;
     result.seconds = seconds;
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
@@ -417,12 +421,11 @@ void Workbench::store_values(const Job& job, const JobCaching& caching, const Ou
     }
 }
 
-void adopt(const StepResult& result, const PlannedStep* step, const std::string& path_prefix, NodeReport& report) {
+void adopt(const StepResult& result, const PlannedStep* step, NodeReport& report) {
     report.metrics = result.metrics;
     report.properties = result.properties;
     report.doubts = result.doubts;
-    report.warnings.clear();
-    for (const std::string& warning : result.warnings) report.warnings.push_back(path_prefix + warning);
+    report.warnings = result.warnings;
     if (!step) return;
     report.resolved = {};
     for (const auto& [name, value] : step->parameters.values)

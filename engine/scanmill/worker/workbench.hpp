@@ -17,6 +17,8 @@
 
 namespace scanmill {
 
+class CountedWarnings;
+
 /// Receives events of a job; from any thread, one call at a time.
 struct JobListener {
     std::function<void(double fraction)> on_progress;
@@ -45,7 +47,7 @@ private:
     };
 
     void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
-    bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener, const OnWarning& on_warning,
+    bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener, CountedWarnings& warnings,
                         const std::function<void()>& report_warnings, JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void write(const WriteWork& work, JobReport& report);
@@ -64,6 +66,7 @@ private:
                                     JobReport& report) const;
     void add_kept(JobReport& report) const;
     void store(const Job& job, const JobCaching& caching, const std::string& run_key, const Outputs& outputs,
+               std::vector<std::string> warnings,
                double seconds, JobReport& report);
     void store_values(const Job& job, const JobCaching& caching, const Outputs& outputs, double cost,
                       JobReport& report);
@@ -80,10 +83,11 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Copies a cached result into the report of a node. `path_prefix` is put before warnings of reading a file.
-void adopt(const StepResult& result, const PlannedStep* step, const std::string& path_prefix, NodeReport& report);
+/// Copies a cached result into the report of a node. Warnings of reading do not name the file: files with equal content
+/// share the result.
+void adopt(const StepResult& result, const PlannedStep* step, NodeReport& report);
 
-/// The beginning of warnings about reading this file.
-std::string path_prefix(const std::filesystem::path& file);
+/// Warnings of reading the file, with its name before each.
+std::vector<std::string> warnings_about(const std::filesystem::path& file, std::vector<std::string> warnings);
 
 }  // namespace scanmill

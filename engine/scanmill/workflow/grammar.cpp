@@ -6,6 +6,7 @@
 #include <array>
 
 #include "scanmill/base/text.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill {
 
@@ -131,7 +132,7 @@ void check_stem_template(const std::string& text, std::string_view what, Positio
 }
 
 std::string with_stem(const std::string& text, const std::filesystem::path& file) {
-    return with_placeholders(text, [&](const std::string&) { return file.stem().string(); });
+    return with_placeholders(text, [&](const std::string&) { return stem_of(file); });
 }
 
 void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics) {
@@ -141,7 +142,7 @@ void check_path_template(const std::string& text, std::string_view what, Positio
 
 std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file) {
     return with_placeholders(text, [&](const std::string& placeholder) {
-        return placeholder == "folder" ? folder_name(file) : file.stem().string();
+        return placeholder == "folder" ? folder_name(file) : stem_of(file);
     });
 }
 

@@ -56,7 +56,7 @@ void check_placeholders(const std::string& text, std::string_view what, std::spa
 /// The text with `value_of` every placeholder in its place.
 std::string with_placeholders(const std::string& text, const std::function<std::string(const std::string&)>& value_of);
 
-/// The frames of a list of scans may contain {stem}, the scan's file name without folder and extension.
+/// The frames of a list of scans may contain {stem}, the scan's file name without folder and extension; see stem_of().
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
 std::string with_stem(const std::string& text, const std::filesystem::path& file);
 

@@ -11,7 +11,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::string_view value_forms = "a value, a list of values, $name or {sweep: [value, …]}";
-constexpr std::string_view step_forms = "a step, as `- decimate: {max-error: 0.1 %diag}`, or `- one-of: […]`";
+constexpr std::string_view step_forms = "a step, as `- FILTER: {PARAMETER: VALUE}`, or `- one-of: […]`";
 constexpr std::string_view workflow_forms = "a workflow: a map that begins with `scanmill: 1`";
 
 /// Adds one text, literal or `$name`; false after an error.
@@ -82,7 +82,7 @@ public:
                                           [&](const YamlEntry& entry) { parameter(entry, workflow); })},
                       {"steps", [&](const YamlEntry& entry) { workflow.steps = steps(entry.value); },
                        "has no steps; expected `steps:` with a list of steps"},
-                      {"outputs", each("a map from file names to steps, as {\"{scan}.stl\": decimate}",
+                      {"outputs", each("a map from file names to steps, as {\"{scan}.stl\": STEP}",
                                        [&](const YamlEntry& entry) {
                                            if (const auto source = reference(entry.value, diagnostics_))
                                                workflow.outputs.push_back({entry.key, entry.position, *source});

@@ -51,19 +51,19 @@ u64 parse_byte_size(std::string_view text) {
         if (const auto amount = amount_before(unit.symbol, text);
             amount && *amount >= 0 && *amount * unit.bytes <= most)
             return static_cast<u64>(std::llround(*amount * unit.bytes));
-    throw Error("'{}' is not a size; expected 500 MiB, 20 GiB, 1.5 GB or a number of bytes", text);
+    throw Error("'{}' is not a size", text).expected("500 MiB, 20 GiB, 1.5 GB or a number of bytes");
 }
 
 double parse_duration(std::string_view text) {
-    constexpr std::string_view expected = "expected 500 ms, 30 s, 10 min or 2 h";
+    constexpr std::string_view examples = "500 ms, 30 s, 10 min or 2 h";
     for (const TimeUnit& unit : time_units)
         if (const auto amount = amount_before(unit.symbol, text)) {
             const double seconds = *amount * unit.seconds / unit.units_per_second;
             if (seconds >= 0 && std::isfinite(seconds)) return seconds;
         }
     double bare = 0;
-    if (parse_number(text, bare) && std::isfinite(bare)) throw Error("'{}' has no unit; {}", text, expected);
-    throw Error("'{}' is not a time; {}", text, expected);
+    if (parse_number(text, bare) && std::isfinite(bare)) throw Error("'{}' has no unit", text).expected(examples);
+    throw Error("'{}' is not a time", text).expected(examples);
 }
 
 std::string duration_text(double seconds) {
@@ -97,9 +97,9 @@ int power_of_length(Unit unit) {
 Length parse_length_power(std::string_view text, int power) {
     assert(power == 2 || power == 3);
     double bare = 0;
-    if (parse_number(text, bare)) throw Error("'{}' has no unit; expected {}", text, length_power_examples(power));
+    if (parse_number(text, bare)) throw Error("'{}' has no unit", text).expected(length_power_examples(power));
     if (const auto length = without_exponent(text, power)) return Length::parse(*length);
-    throw Error("'{}' is not {}; expected {}", text, power == 2 ? "an area" : "a volume", length_power_examples(power));
+    throw Error("'{}' is not {}", text, power == 2 ? "an area" : "a volume").expected(length_power_examples(power));
 }
 
 bool is_absolute(const Length& length) {

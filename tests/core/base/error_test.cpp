@@ -46,6 +46,13 @@ TEST(Error, SecondHint_ReplacesTheFirst) {
     EXPECT_STREQ(error.what(), "it broke");
 }
 
+TEST(Error, Expectation_EndsTheSentenceAfterTheFinding) {
+    const Error error = Error("'x' is not a length").expected("0.1 mm");
+    EXPECT_EQ(error.sentence(), "'x' is not a length; expected 0.1 mm");
+    EXPECT_EQ(error.finding(), "'x' is not a length");
+    EXPECT_EQ(error.reworded("it broke").finding(), "it broke");
+}
+
 TEST(Error, ThrownWithAHint_IsCaughtAsAStandardException) {
     try {
         throw Error("needs {}", 1).hint("give one");

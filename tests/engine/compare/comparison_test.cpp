@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "engine/compare/made_runs.hpp"
-#include "scanmill/compare/reproduce.hpp"
 #include "support/numbers.hpp"
 #include "support/thrown.hpp"
 
@@ -336,7 +335,7 @@ TEST(Comparison, CachedCells_HaveNoCosts) {
     RunDetails now = run_of_one(5, 0.5, {{"seconds", "+20 %", {}}});
     const Comparison comparison = compared(now, run_of_one(1, 0.5), pool(20));
     EXPECT_EQ(comparison.verdict, Verdict::passed);
-    EXPECT_THAT(comparison.notes, Contains(HasSubstr("run with --no-cache")));
+    EXPECT_THAT(comparison.notes, Contains(HasSubstr("run without the cache")));
 }
 
 TEST(Comparison, UnknownMemory_IsNotCompared) {
@@ -404,45 +403,6 @@ TEST(Comparison, NoGate_ListsAndTripsOnlyOnMissingCells) {
     EXPECT_EQ(compared(run_of_one(2, 99), run_of_one(1, 0.5)).verdict, Verdict::passed);
     EXPECT_TRUE(compared(made_run(2), run_of_one(1, 0.5)).tripped());
     EXPECT_EQ(compared(made_run(2), made_run(1)).verdict, Verdict::passed);
-}
-
-TEST(ReproducingCommand, OfABatch_NamesScanAndVariant) {
-    RunDetails now = run_of_one(2, 0.9, {{"hausdorff", "+1 %", {}}});
-    EXPECT_EQ(compared(now, run_of_one(1, 0.5)).cells[0].command,
-              "scanmill batch jobs/nightly.yaml --scan scans/a.ply --only default -o reproduced");
-    now.start.seed = 7;
-    add_cell(now, "jobs/it's \"b\"\n.ply").workflow = "other";
-    now.cells[1].outcome = Outcome::failed;
-    const Comparison comparison = compare(now, nullptr);
-    EXPECT_EQ(comparison.cells[1].command,
-              "scanmill batch jobs/nightly.yaml --scan $'it\\'s \"b\"\\n.ply' --workflow other --seed 7 --only default "
-              "-o reproduced");
-}
-
-TEST(ReproducingCommand, OfARun_KeepsWhatDecidesResults) {
-    RunDetails run = made_run(1);
-    run.start.file = "w.yaml";
-    run.start.arguments = {"scanmill", "run", "w.yaml", "a.ply", "b.ply",     "--set", "x=1 mm",
-                           "-o",       "out", "--unit", "mm",    "--threads", "2",     "--set=y=2"};
-    CellRecord& cell = add_cell(run, "b.ply", "fine");
-    cell.workflow = "w";
-    EXPECT_EQ(reproducing_command(run, cell, "b.ply"),
-              "scanmill run w.yaml b.ply --set 'x=1 mm' --unit mm --set=y=2 --only fine -o reproduced");
-    cell.scan = "w";
-    EXPECT_EQ(
-        reproducing_command(run, cell, "w"),
-        "scanmill run w.yaml a.ply b.ply --set 'x=1 mm' --unit mm --threads 2 --set=y=2 --only fine -o reproduced");
-}
-
-TEST(QuotedWord, AnyName_IsOneWordOnOneLine) {
-    EXPECT_EQ(quoted_word("a/b.ply"), "a/b.ply");
-    EXPECT_EQ(quoted_word("a b"), "'a b'");
-    EXPECT_EQ(quoted_word("it's"), "'it'\\''s'");
-    EXPECT_EQ(quoted_word("a\n\x1b'\\"), "$'a\\n\\x1b\\'\\\\'");
-    EXPECT_EQ(quoted_word("ö\xff"), "$'ö\\xff'");
-    EXPECT_EQ(quoted_word("ö"), "'ö'");
-    EXPECT_EQ(quoted_word("$(rm x)"), "'$(rm x)'");
-    EXPECT_EQ(quoted_word(""), "''");
 }
 
 TEST(ChosenMetric, DefaultsToTheFirstRuleThenMeasurementThenSeconds) {

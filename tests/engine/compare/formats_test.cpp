@@ -296,8 +296,9 @@ TEST(Markdown, EveryVerdict_KeepsItsTables) {
 
 TEST(Markdown, BackticksInCommands_DoNotEndTheBlock) {
     RunDetails run = made_run(1);
-    add_cell(run, "jobs/a```b.ply").outcome = Outcome::failed;
-    EXPECT_THAT(markdown(compare(run, nullptr), "seconds"), AllOf(HasSubstr("````sh\n"), HasSubstr("\n````\n")));
+    add_cell(run, "jobs/a.ply", "a```b").outcome = Outcome::failed;
+    EXPECT_THAT(markdown(compare(run, nullptr, made_command), "seconds"),
+                AllOf(HasSubstr("````sh\n"), HasSubstr("\n````\n")));
 }
 
 TEST(Markdown, LongReports_AreCut) {

@@ -84,11 +84,16 @@ inline RunDetails run_of_one(std::int64_t id, double hausdorff, const std::vecto
     return run;
 }
 
+/// On one line, whatever the scan's name.
+inline std::string made_command(const RunDetails& run, const CellRecord& cell, const std::string& scan) {
+    return "scanmill batch " + run.start.file + " --scan " + scan.substr(0, scan.find('<')) + " --only " + cell.variant;
+}
+
 inline Comparison compared(const RunDetails& run, const RunDetails& accepted, std::vector<PastCosts> costs = {}) {
     const Baseline baseline{accepted,
                             Acceptance{1, accepted.summary.id, "2026-01-01T08:00:00Z", "Ann", "first", {}, {}, {}}, "",
                             std::move(costs)};
-    return compare(run, &baseline);
+    return compare(run, &baseline, made_command);
 }
 
 /// Passes of so many seconds, as much processor time and 100 MB.

@@ -34,6 +34,14 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a-bad.xyz"));
 }
 
+TEST_F(Run, UndeclaredMetric_IsAFaultThatNamesFilterAndMetric) {
+    const RunReport report = run("  - test-step: {mode: undeclared-metric}\n", {scan("a.xyz")});
+    EXPECT_TRUE(report.has_fault());
+    EXPECT_EQ(report.cells[0].failure.cause, Cause::fault);
+    EXPECT_THAT(report.cells[0].failure.whole().what(), AllOf(HasSubstr("test-step"), HasSubstr("'stray'")));
+    EXPECT_FALSE(run("  - test-step: {mode: fail}\n", {scan("a.xyz")}).has_fault());
+}
+
 TEST_F(Run, BadScan_FailsItsCellOnly) {
     const RunReport report =
         run("  - test-step:\n", {scan("bad.xyz", "1 2\n"), (folder_ / "missing.xyz").string(), scan("good.xyz")},

@@ -36,6 +36,7 @@ SCANMILL_FILTER() {
                  {"leak", P::Mode::leak, "Leaves files open."},
                  {"exit", P::Mode::exit, "Ends the process as if all were well."},
                  {"change-folder", P::Mode::change_folder, "Changes the process's working folder."},
+                 {"undeclared-metric", P::Mode::undeclared_metric, "Reports a metric that it does not declare."},
                  {"babble", P::Mode::babble, "Warns 50,000 times."},
                  {"close-streams", P::Mode::close_streams, "Closes standard output and error."},
                  {"close-channel", P::Mode::close_channel, "Closes the channel to the runner, and never returns."}},

@@ -45,6 +45,7 @@ std::string_view name_of(Mode mode) {
         case Mode::leak: return "leak";
         case Mode::exit: return "exit";
         case Mode::change_folder: return "change-folder";
+        case Mode::undeclared_metric: return "undeclared-metric";
         case Mode::babble: return "babble";
         case Mode::close_streams: return "close-streams";
         case Mode::close_channel: return "close-channel";
@@ -108,6 +109,7 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
                 if (::open("/dev/null", O_RDONLY) < 0) throw Error("no file could be opened");
             break;
         case Mode::exit: std::exit(0);
+        case Mode::undeclared_metric: context.metric("stray", 1); break;
         case Mode::babble:
             for (int i = 0; i < 50'000; ++i) context.warn(fmt::format("warning {}", i));
             break;

@@ -26,6 +26,7 @@ struct ReadOptions {
     std::function<void(std::string)> on_warning;
     /// Unless unknown, the unit of the coordinates; it overrides the unit that the file declares.
     LengthUnit unit = LengthUnit::unknown;
+    bool names_file = true;  ///< whether warnings begin with the file's name
 };
 
 struct LoadedFile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/compare/reproduce.hpp"
+#include "output/reproduce.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <array>
 
 #include "scanmill/base/text.hpp"
-#include "scanmill/compare/detail/utf8.hpp"
+#include "scanmill/compare/utf8.hpp"
 
-namespace scanmill {
+namespace scanmill::runner {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::string reproducing_command(const RunDetails& run, const CellRecord& cell, c
     return command + " --only " + quoted_word(cell.variant) + " -o reproduced";
 }
 
-}  // namespace scanmill
+}  // namespace scanmill::runner

@@ -6,7 +6,7 @@
 
 #include "scanmill/records/run_records.hpp"
 
-namespace scanmill {
+namespace scanmill::runner {
 
 /// "scanmill batch nightly.yaml --scan scans/a.ply --only fine -o reproduced", or the same with `run` and the options
 /// of the recorded command that decide results, quoted for a shell. To be run where the recorded command was run.
@@ -17,4 +17,4 @@ std::string reproducing_command(const RunDetails& run, const CellRecord& cell, c
 /// $'a\nb', so that the word is one line.
 std::string quoted_word(const std::string& text);
 
-}  // namespace scanmill
+}  // namespace scanmill::runner

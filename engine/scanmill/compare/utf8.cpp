@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/compare/detail/utf8.hpp"
+#include "scanmill/compare/utf8.hpp"
 
 namespace scanmill {
 
