@@ -62,7 +62,6 @@ std::string plan_text(const Plan& plan) {
             for (const auto& [name, value] : step.parameters.values)
                 if (const std::string shown = scanmill::text(value); !shown.empty())
                     text += fmt::format("        {}: {}\n", name, shown);
-            if (!step.measures.empty()) text += fmt::format("        measures {}\n", step.measures);
             for (const PlannedExpectation& expectation : step.expectations)
                 text += fmt::format("        expect {}\n", expectation.text);
         }
@@ -106,10 +105,7 @@ Json plan_json(const Plan& plan) {
             for (const ValueSource& source : input.sources) entry["in"][input.port].push_back(describe(plan, source));
             if (streams(plan, input)) entry["streams"].push_back(input.port);
         }
-        if (!step.measures.empty()) {  // line and column are in the batch
-            entry["measures"] = step.measures;
-            entry["file"] = step.file;
-        }
+        if (!step.file.empty()) entry["file"] = step.file;  // that line and column are in
         for (const auto& [name, value] : step.parameters.values)
             if (const std::string shown = text(value); !shown.empty()) entry["parameters"][name] = shown;
         for (const PlannedExpectation& expectation : step.expectations) entry["expect"].push_back(expectation.text);

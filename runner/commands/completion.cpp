@@ -8,6 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "scanmill/workflow/document.hpp"
 
 namespace scanmill::runner {
@@ -215,8 +216,10 @@ void print_settings(const Workflow& workflow, const FilterLibrary& library) {
 /// For the scripts: the words are those after `scanmill` on the command line so far.
 int complete_set(const std::vector<std::string>& words) {
     const FilterLibrary library = open_library();
-    if (const FilterSpec* spec = library.find("measure"); spec && !words.empty() && words.front() == "measure") {
-        for (const ParameterSpec& parameter : spec->parameters) print_setting(parameter.name, values_of(parameter));
+    if (!words.empty() && words.front() == "measure") {
+        for (const std::string& filter : measuring_filters(library))
+            for (const ParameterSpec& parameter : library.find(filter)->parameters)
+                print_setting(parameter.name, values_of(parameter));
         return done;
     }
     for (std::size_t i = 1; i < words.size(); ++i) {

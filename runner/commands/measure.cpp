@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `measure`: a workflow of one step, made here and run like any other.
+
 #include <fmt/format.h>
 
-#include <new>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
@@ -10,21 +12,20 @@
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/value.hpp"
-#include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/run/run.hpp"
 #include "scanmill/session/session.hpp"
-#include "scanmill/worker/step_runner.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-const std::string filter = "measure";
+constexpr const char* metrics_file = "metrics.json";
 
 struct Options {
-    std::string mesh, truth;
+    std::string mesh, truth, filter;
     LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown;
     InvalidRows invalid = InvalidRows::by_format;
     std::vector<std::string> settings;
@@ -33,58 +34,67 @@ struct Options {
     std::uint64_t seed = 0;
 };
 
-/// The filter's defaults, overridden by --set.
-ParameterSet parameters_of(const FilterSpec& spec, const std::vector<std::string>& pairs) {
+const FilterSpec& measuring_filter(const FilterLibrary& library, const std::string& wanted) {
+    const std::vector<std::string> names = measuring_filters(library);
+    if (names.empty()) throw Error("no installed filter measures results");
+    if (wanted.empty() && names.size() > 1)
+        throw Error("{} measure results; expected --filter NAME", enumerated(names));
+    if (!wanted.empty() && std::ranges::find(names, wanted) == names.end())
+        throw Error("'{}' is not a filter that measures results; expected {}{}", wanted, enumerated(names),
+                    did_you_mean(wanted, names));
+    return *library.find(wanted.empty() ? names.front() : wanted);
+}
+
+/// Reads the value and the truth, measures, and writes the numbers.
+Workflow measuring_workflow(const FilterSpec& spec, const Settings& settings) {
+    Workflow workflow;
+    workflow.name = spec.name;
     StepSyntax step;
     step.filter = spec.name;
-    for (const auto& [name, value] : parse_settings(pairs)) {
+    for (const std::string& name : {spec.measures->value, spec.measures->truth}) {
+        const PortSpec& port = *spec.input(name);
+        WorkflowInput& input = workflow.inputs.emplace_back();
+        input.name = name;
+        input.kind = port.kind;
+        input.also = port.also;
+        step.in.push_back({name, {}, {{name, {}}}});
+    }
+    for (const auto& [name, value] : settings) {
         if (value.sweep) throw Error("--set {}: a sweep is for workflows; give one value", name);
         step.parameters.push_back({name, {}, value});
     }
-    ExpandedStep expanded{&step, {}, {}};
-    for (const NamedExpression& parameter : step.parameters) {
-        const WrittenValue& written = parameter.value.values.front();
-        expanded.arguments.push_back({&parameter, &written, written.literal, {}});
-    }
-    Diagnostics diagnostics("");
-    ParameterSet set = step_parameters(expanded, spec, {"", {}, diagnostics, nullptr});
-    if (diagnostics.has_errors()) throw Error("--set: {}", diagnostics.sorted().front().message);
-    return set;
+    workflow.steps.push_back({std::move(step)});
+    workflow.outputs.push_back({metrics_file, {}, {spec.name, {}}});
+    return workflow;
 }
 
-/// The truth in the mesh's unit. Throws Error if only one of the two declares a unit: a wrong guess would be a wrong
-/// score.
-std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
-    ReadOptions reading;
-    reading.on_warning = warn;
-    reading.unit = options.unit;
-    const Value mesh = read_mesh(options.mesh, reading);
-    reading.unit = options.truth_unit;
-    const LoadedFile loaded = read_file(options.truth, reading);
-    Value truth = loaded.value;
-    if (truth.find<PointCloud>())
-        truth =
-            std::make_shared<const PointCloud>(accepted_points(loaded, options.truth, reading, options.invalid).result);
-    else if (!truth.find<TriangleMesh>())
-        throw Error("'{}': the truth is a mesh or points; the file contains {}", options.truth, truth.kind().name());
-    if (Frame frame = *frame_of(truth); frame.unit == LengthUnit::unknown) {
-        frame.unit = options.unit;  // --unit is also that of a truth that declares none
-        truth = reframed(truth, frame);
+/// --unit is also the unit of a truth that declares none.
+LengthUnit unit_of_truth(const Options& options) {
+    if (options.truth_unit != LengthUnit::unknown || options.unit == LengthUnit::unknown) return options.truth_unit;
+    try {
+        const std::optional<Frame> frame = frame_of(read_file(options.truth).value);
+        return frame && frame->unit == LengthUnit::unknown ? options.unit : LengthUnit::unknown;
+    } catch (const Error&) {
+        return LengthUnit::unknown;  // the run reports it
     }
-    for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth})
-        require_supported_range(bounding_box(positions_of(*value).span()));
-    const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
-    if (here == there) return {{"mesh", mesh}, {"truth", truth}};
-    if (here == LengthUnit::unknown)
-        throw Error("'{}' declares no unit, '{}' is in {}; they cannot be compared", options.mesh, options.truth,
-                    symbol(there))
-            .hint("name its unit: --unit mm");
-    if (there == LengthUnit::unknown)
-        throw Error("'{}' is in {}, '{}' declares no unit; they cannot be compared", options.mesh, symbol(here),
-                    options.truth)
-            .hint("name its unit: --truth-unit mm");
-    truth = in_unit(truth, here);
-    return {{"mesh", mesh}, {"truth", truth}};
+}
+
+RunGraph graph_of(const FilterSpec& spec, const Options& options, FilterLibrary& library,
+                  const std::filesystem::path& folder) {
+    std::vector<std::string> settings = options.settings;
+    if (options.certify) settings.emplace_back("certify=true");
+    Diagnostics diagnostics("");
+    const Plan plan = make_plan(measuring_workflow(spec, parse_settings(settings)), library, {}, diagnostics);
+    if (diagnostics.has_errors()) throw Error("--set: {}", diagnostics.sorted().front().message);
+    RunRequest request;
+    ScanFile& mesh = request.scans.emplace_back(options.mesh);
+    mesh.unit = options.unit;
+    ScanFile& truth = mesh.inputs[spec.measures->truth].emplace_back(options.truth);
+    truth.unit = unit_of_truth(options);
+    truth.invalid = options.invalid;
+    request.output_folder = folder;
+    request.seed = options.seed;
+    return make_graph(plan, library, request);
 }
 
 std::string report_text(const Metrics& metrics) {
@@ -105,40 +115,26 @@ nlohmann::ordered_json report_json(const Options& options, const Metrics& metric
 
 int measure(const Options& options) {
     FilterLibrary library = open_library();
-    const FilterSpec& spec = find_filter(library, filter);
-    std::vector<std::string> settings = options.settings;
-    if (options.certify) settings.emplace_back("certify=true");
-    PlannedStep step;
-    step.label = filter;
-    step.spec = spec;
-    step.parameters = parameters_of(spec, settings);
-    std::vector<std::string> warnings;
-    const auto warn = [&](std::string text) {
-        print_warning(text);
-        warnings.push_back(std::move(text));
-    };
-    ContextOptions running;
+    ScratchFolder scratch;
+    const std::filesystem::path folder = scratch.folder("measure");
+    const RunGraph graph = graph_of(measuring_filter(library, options.filter), options, library, folder);
+    InProcessWorker worker(library, nullptr, KeepRule::Policy::never, {});
+    RunSettings running;
     running.threads = options.threads > 0 ? options.threads : usable_cores();
-    running.seed = options.seed;
-    running.on_warning = [&](std::string_view text) { warn(std::string(text)); };
-    try {
-        NodeReport report;
-        const Outputs outputs = run_step(
-            step, [&]() -> const FilterDeclaration& { return library.load(filter); }, read_inputs(options, warn),
-            std::move(running), [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report);
-        const auto& metrics = *outputs.find(spec.outputs.front().name)->get<Metrics>();
-        if (options.json)
-            print_json(report_json(options, metrics, warnings));
-        else
-            fmt::print("{}", report_text(metrics));
-    } catch (const Error& error) {
-        print(error, options.json);
-        return some_failed;
-    } catch (const std::bad_alloc&) {
-        print(Error("memory ran out").hint("measure with fewer samples (--set samples=100000), or smaller meshes"),
-              options.json);
-        return some_failed;
+    const RunReport report = run(library, graph, worker, running);
+    std::vector<std::string> warnings;
+    for (const NodeReport& node : report.nodes)
+        warnings.insert(warnings.end(), node.warnings.begin(), node.warnings.end());
+    for (const std::string& warning : warnings) print_warning(warning);
+    if (report.outcome() >= Outcome::failed) {
+        print(report.cells.front().failure.whole(), options.json);
+        return report.has_fault() ? our_fault : some_failed;
     }
+    const auto metrics = read_file(folder / metrics_file).value.get<Metrics>();
+    if (options.json)
+        print_json(report_json(options, *metrics, warnings));
+    else
+        fmt::print("{}", report_text(*metrics));
     return done;
 }
 
@@ -155,6 +151,7 @@ void add_measure(CLI::App& app, Action& chosen) {
     add_invalid_option(command, options.invalid,
                        "Points of TRUTH with a NaN, infinite or too distant coordinate: drop or refuse. Default: drop "
                        "where the format writes NaN for a ray without a return (PCD, PTX), else refuse");
+    command.add_option("--filter", options.filter, "The filter that measures, if several are installed");
     command.add_flag("--certify", options.certify, "Bound the Hausdorff distance from below and above; takes longer");
     command.add_option("--set", options.settings,
                        "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");

@@ -306,13 +306,12 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     file.pose = scan.pose;
     file.invalid = scan.invalid;
     for (const WorkflowInput& input : plan.workflow.inputs) {
-        if (input.is_truth) {
-            ScanFile truth(scan.truth.file);
-            truth.unit = scan.truth.unit;
-            truth.frame = scan.truth.frame;
-            file.inputs[input.name].push_back(std::move(truth));
-        } else if (const auto own = scan.inputs.find(input.name); own != scan.inputs.end()) {
-            file.inputs[input.name].assign(own->second.files.begin(), own->second.files.end());
+        const auto own = scan.inputs.find(input.name);
+        if (own == scan.inputs.end()) continue;
+        for (const std::filesystem::path& path : own->second.files) {
+            ScanFile& other = file.inputs[input.name].emplace_back(path);
+            other.unit = own->second.unit;
+            other.frame = own->second.frame;
         }
     }
     return file;
@@ -332,8 +331,8 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
     std::vector<std::filesystem::path> files{batch.file};
     for (const BatchScan& scan : batch.scans) {
         files.push_back(scan.file);
-        for (const std::filesystem::path& other : {scan.truth.file, scan.pose_file})
-            if (!other.empty()) files.push_back(other);
+        if (!scan.pose_file.empty()) files.push_back(scan.pose_file);
+        files.insert(files.end(), scan.truth.files.begin(), scan.truth.files.end());
         for (const auto& [name, input] : scan.inputs) files.insert(files.end(), input.files.begin(), input.files.end());
     }
     return files;

@@ -26,14 +26,14 @@ Names matches_in(const std::string& text, const std::string& pattern) {
 }
 
 TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
-    const std::filesystem::path source = test::source_folder();
+    const std::filesystem::path root = test::source_folder();
     Names scaled;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "filters"))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "filters"))
         if (entry.path().extension() == ".cpp")
             scaled.merge(matches_in(content_of(entry.path()),
                                     "Column\\(\"([a-z0-9-]+)\"[^\n]*with_length_exponent\\((?:1|-1)\\)"));
     ASSERT_TRUE(scaled.contains("bin-size") && scaled.contains("curvature-1"));
-    const std::string guide = content_of(source / "docs/user-guide.md");
+    const std::string guide = content_of(root / "docs/user-guide.md");
     const std::size_t begin = guide.find("`--to-unit mm` multiplies");
     ASSERT_NE(begin, std::string::npos);
     const std::string told = guide.substr(begin + 15, guide.find("\n\n", begin) - begin - 15);

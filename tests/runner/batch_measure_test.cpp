@@ -116,12 +116,12 @@ TEST_F(MeasuredBatch, MeasuringSteps_AreInPlanAndDryRun_AndInTheCache) {
     write_measured("{path: truth.stl, unit: mm}");
     EXPECT_THAT(scanmill({"check", "b.yaml", "--plan"}).out,
                 AllOf(HasSubstr("input truth: mesh or points\n"), HasSubstr("measure-surface (measure)\n"),
-                      HasSubstr("        truth <- truth\n"), HasSubstr("        samples: 2000\n"),
-                      HasSubstr("        measures surface\n")));
+                      HasSubstr("        truth <- truth\n"), HasSubstr("        mesh <- surface\n"),
+                      HasSubstr("        samples: 2000\n")));
     const Json plan = Json::parse(scanmill({"check", "b.yaml", "--plan", "--json"}).out)["files"][1]["plan"];
-    EXPECT_EQ(plan["steps"].back()["measures"], "surface");
+    EXPECT_EQ(plan["steps"].back()["in"]["truth"], Json{"truth"});
     EXPECT_EQ(plan["steps"].back()["file"], "b.yaml");
-    EXPECT_FALSE(plan["steps"].front().contains("measures"));
+    EXPECT_FALSE(plan["steps"].front().contains("file"));
     EXPECT_THAT(run_batch({"--dry-run"}).out, HasSubstr(" measure-surface\n"));
     const std::vector<std::string> cached{"-q", "-j", "1", "--keep", "always"};
     ASSERT_EQ(run_batch(cached).exit_code, 0);

@@ -22,9 +22,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const std::vector<std::string> filters{"alpha-solid", "crop",         "delaunay",        "edge-flip",
-                                       "features",    "merge",        "outlier-removal", "region-grow",
-                                       "sculpt",      "virtual-scan", "voxel-thin"};
+const std::vector<std::string> all_filters{"alpha-solid", "crop",         "delaunay",        "edge-flip",
+                                           "features",    "merge",        "outlier-removal", "region-grow",
+                                           "sculpt",      "virtual-scan", "voxel-thin"};
 
 TEST(Command, Help_GoesToStdoutAndIsNoError) {
     const ProgramResult help = scanmill_program({"--help"});
@@ -90,7 +90,7 @@ TEST(Command, List_NamesEveryFilterInTextAndJson) {
     EXPECT_EQ(listed.at("scanmill"), 1);
     std::vector<std::string> names;
     for (const json& filter : listed.at("filters")) names.push_back(filter.at("name"));
-    for (const std::string& filter : filters) {
+    for (const std::string& filter : all_filters) {
         EXPECT_THAT(text.out, HasSubstr(filter));
         EXPECT_THAT(names, testing::Contains(filter));
     }
@@ -135,7 +135,7 @@ TEST(Command, UnknownCommand_IsNamedWithTheNearest) {
 
 TEST(Command, ShowExample_IsAWorkflowThatPassesCheck) {
     const TemporaryFolder folder;
-    for (const std::string& filter : filters) {
+    for (const std::string& filter : all_filters) {
         const ProgramResult shown = scanmill_program({"show", filter, "--example"});
         EXPECT_EQ(shown.exit_code, 0);
         const ProgramResult checked = scanmill_program({"check", folder.write(filter + ".yaml", shown.out).string()});

@@ -160,6 +160,7 @@ TEST_F(MeasureCommand, TruthOfAnotherKnownUnit_IsConverted) {
         EXPECT_LT(printed["metrics"]["hausdorff"].get<double>(), 1e-12);
         EXPECT_EQ(printed["units"]["hausdorff"], "length");
     }
+    EXPECT_EQ(scanmill({"measure", "sphere.ply", "metres.ply", "--unit", "mm"}).exit_code, 0) << "that of the mesh";
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--unit", "banana"}).exit_code, 2);
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--truth-unit", "banana"}).exit_code, 2);
 }
@@ -180,12 +181,13 @@ TEST_F(MeasureCommand, UnitThatOnlyOneOfBothDeclares_IsNotGuessed) {
     scanmill({"convert", "sphere.ply", "millimetres.ply", "--unit", "mm"});
     const ProgramResult mesh = scanmill({"measure", "sphere.ply", "millimetres.ply"});
     EXPECT_EQ(mesh.exit_code, 1);
-    EXPECT_THAT(mesh.err, HasSubstr("'sphere.ply' declares no unit, 'millimetres.ply' is in mm"));
-    EXPECT_THAT(mesh.err, HasSubstr("--unit mm"));
+    EXPECT_THAT(mesh.err, HasSubstr("the mesh has no unit, the truth is in mm"));
+    EXPECT_THAT(mesh.err, HasSubstr(": --unit mm"));
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "millimetres.ply", "--unit", "mm"}).exit_code, 0);
     const ProgramResult truth = scanmill({"measure", "millimetres.ply", "sphere.ply"});
     EXPECT_EQ(truth.exit_code, 1);
-    EXPECT_THAT(truth.err, HasSubstr("'millimetres.ply' is in mm, 'sphere.ply' declares no unit"));
+    EXPECT_THAT(truth.err, HasSubstr("the mesh is in mm, the truth has no unit"));
+    EXPECT_THAT(truth.err, HasSubstr("--truth-unit mm"));
     EXPECT_EQ(scanmill({"measure", "millimetres.ply", "sphere.ply", "--truth-unit", "mm"}).exit_code, 0);
 }
 

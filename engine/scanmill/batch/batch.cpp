@@ -16,6 +16,7 @@
 #include "scanmill/io/mapped_file.hpp"
 #include "scanmill/plan/output_names.hpp"
 #include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/plan/wiring.hpp"
 #include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
@@ -264,7 +265,7 @@ public:
 
     CheckedBatch checked() {
         const Batch& batch = checked_.batch;
-        if (batch.measure) measuring_ = measuring(*batch.measure);
+        if (batch.measure) measuring_ = measuring_filter(*batch.measure);
         for (std::size_t i = 0; i < batch.workflows.size(); ++i) plan_workflow(i);
         if (!unreadable_) {
             report_undeclared(batch.settings);
@@ -276,7 +277,7 @@ public:
         report_idle_truths();
         const bool is_sound = !unreadable_ && std::ranges::none_of(checked_.diagnostics, &Diagnostics::has_errors);
         if (is_sound && measuring_) report_unmeasured();
-        if (is_sound && batch.gate && batch.measure.has_value() == measuring_.has_value())
+        if (is_sound && batch.gate && batch.measure.has_value() == (measuring_ != nullptr))
             check_gate(batch, checked_.parts, library_, batch_diagnostics_);
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
@@ -286,6 +287,9 @@ public:
                                      cells, most_cells);
         else if (is_sound && !batch_diagnostics_.has_errors())
             report_shared_files();
+        if (measuring_)
+            for (BatchScan& scan : checked_.batch.scans)
+                if (!scan.truth.files.empty()) scan.inputs.emplace(truth_input, scan.truth);
         checked_.diagnostics.insert(checked_.diagnostics.begin(), std::move(batch_diagnostics_));
         return std::move(checked_);
     }
@@ -298,19 +302,12 @@ private:
         return std::span(workflow.inputs).subspan(std::min<std::size_t>(1, workflow.inputs.size()));
     }
 
-    /// The measuring filter with its parameters; nothing after an error.
-    std::optional<Measuring> measuring(const BatchMeasure& written) {
-        const auto can_measure = [](const FilterSpec& spec) {
-            return spec.measures && std::ranges::all_of(spec.inputs, [&](const PortSpec& port) {
-                       return port.optional || port.name == spec.measures->value || port.name == spec.measures->truth;
-                   });
-        };
-        std::vector<std::string> names;
-        for (const std::string& name : library_.names())
-            if (can_measure(*library_.find(name))) names.push_back(name);
+    /// The filter that measures; null after an error in its name or parameters.
+    const FilterSpec* measuring_filter(const BatchMeasure& written) {
+        const std::vector<std::string> names = measuring_filters(library_);
         const auto error = [&](Position position, std::string message) {
             batch_diagnostics_.error(position, std::move(message));
-            return std::nullopt;
+            return nullptr;
         };
         if (names.empty()) return error(written.position, "no installed filter measures results");
         if (written.filter.empty() && names.size() > 1)
@@ -320,19 +317,62 @@ private:
             return error(written.filter_position,
                          fmt::format("'{}' is not a filter that measures results; expected {}{}", written.filter,
                                      enumerated(names), did_you_mean(written.filter, names)));
-        const FilterSpec& spec = *library_.find(written.filter.empty() ? names.front() : written.filter);
-        StepSyntax syntax;
-        syntax.filter = spec.name;
-        syntax.position = written.position;
-        syntax.parameters = written.parameters;
+        const FilterSpec* spec = library_.find(written.filter.empty() ? names.front() : written.filter);
+        const StepSyntax syntax = measuring_step(*spec);
         ExpandedStep step{&syntax, {}, {}};
         for (const NamedExpression& parameter : syntax.parameters)
             if (!parameter.value.values.empty())  // empty after an error
                 step.arguments.push_back(
                     {&parameter, &parameter.value.values.front(), parameter.value.values.front().literal, {}});
-        const std::string& file = checked_.batch.file;
-        ParameterSet parameters = step_parameters(step, spec, {file, Settings(), batch_diagnostics_, nullptr});
-        return Measuring{spec, std::move(parameters), file, written.position, written.of};
+        const std::size_t errors = batch_diagnostics_.errors();
+        step_parameters(step, *spec, {syntax.file, Settings(), batch_diagnostics_, nullptr});
+        return batch_diagnostics_.errors() == errors ? spec : nullptr;
+    }
+
+    StepSyntax measuring_step(const FilterSpec& spec) const {
+        const Batch& batch = checked_.batch;
+        StepSyntax step;
+        step.filter = spec.name;
+        step.position = batch.measure->position;
+        step.parameters = batch.measure->parameters;
+        step.file = batch.file;
+        step.may_be_left_out = true;
+        return step;
+    }
+
+    /// `plain`: the plan of the workflow, whose outputs are measured unless `of` names other values.
+    Workflow with_measurements(Workflow workflow, const Plan& plain, Diagnostics& diagnostics) const {
+        const auto& [value_port, truth_port] = *measuring_->measures;
+        const Position position = checked_.batch.measure->position;
+        const PortSpec& truth = *measuring_->input(truth_port);
+        WorkflowInput& input = workflow.inputs.emplace_back();
+        input.name = truth_input;
+        input.position = position;
+        input.kind = truth.kind;
+        input.also = truth.also;
+        input.by_name = true;
+        std::vector<Reference> values = checked_.batch.measure->of;
+        if (values.empty())
+            for (const PlannedVariant& variant : plain.variants)
+                for (const PlannedOutput& output : variant.outputs)
+                    if (measuring_->input(value_port)->takes(kind_of(plain, output.source)))
+                        values.push_back({output.name, position});
+        std::set<std::string> added;
+        for (const Reference& value : values) {
+            if (!added.insert(value.text).second) continue;
+            StepSyntax step = measuring_step(*measuring_);
+            step.id = measuring_step_name(value);
+            step.in = {{value_port, position, {value}}, {truth_port, position, {{truth_input, position}}}};
+            const auto taken = std::ranges::find_if(
+                plain.variants, [&](const PlannedVariant& variant) { return variant.steps_by_name.contains(step.id); });
+            if (taken == plain.variants.end())
+                workflow.steps.push_back({std::move(step)});
+            else
+                diagnostics.error(plain.steps[taken->steps_by_name.at(step.id)].position,
+                                  "the step has the name '{}', which the batch's `measure` adds; rename the step",
+                                  step.id);
+        }
+        return workflow;
     }
 
     void plan_workflow(std::size_t index) {
@@ -360,6 +400,11 @@ private:
             first_inputs_.insert(workflow.inputs.front().name);
         }
         for (const WorkflowInput& input : further_inputs(workflow)) further_inputs_.insert(input.name);
+        if (const auto taken = std::ranges::find(workflow.inputs, truth_input, &WorkflowInput::name);
+            checked_.batch.measure && taken != workflow.inputs.end())
+            diagnostics.error(taken->position,
+                              "the input has the name '{}', which the batch's `measure` adds; rename the input",
+                              truth_input);
         for (const WorkflowParameter& parameter : workflow.parameters) declared_.insert(parameter.name);
         add_parts(workflow, index, diagnostics);
         checked_.diagnostics.push_back(std::move(diagnostics));
@@ -397,12 +442,15 @@ private:
         }
     }
 
-    bool has_truth(std::size_t scan) const { return !checked_.batch.scans[scan].truth.file.empty(); }
+    bool has_truth(std::size_t scan) const { return !checked_.batch.scans[scan].truth.files.empty(); }
 
     std::shared_ptr<const Plan> plan(const Workflow& workflow, const Settings& settings, bool is_measured,
                                      Diagnostics& diagnostics) {
-        return std::make_shared<const Plan>(make_plan(workflow, library_, settings, diagnostics, &batch_diagnostics_,
-                                                      is_measured ? &*measuring_ : nullptr));
+        Plan plan = make_plan(workflow, library_, settings, diagnostics, &batch_diagnostics_);
+        if (is_measured && !diagnostics.has_errors())
+            plan = make_plan(with_measurements(workflow, plan, diagnostics), library_, settings, diagnostics,
+                             &batch_diagnostics_);
+        return std::make_shared<const Plan>(std::move(plan));
     }
 
     /// One run of a list of scans takes the further files of all of them.
@@ -426,16 +474,16 @@ private:
 
     bool agree_on_truth(const BatchWorkflow& listed, const Group& group) {
         const std::vector<BatchScan>& all = checked_.batch.scans;
-        const BatchTruth& first = all[group.scans.front()].truth;
+        const BatchInput& first = all[group.scans.front()].truth;
         for (const std::size_t scan : group.scans)
-            if (!all[scan].truth.same_file(first)) {
+            if (!all[scan].truth.has_same_files(first)) {
                 batch_diagnostics_.warning(
                     listed.position, fmt::format("'{}' takes all scans in one run, and they have different truths: its "
                                                  "results are not measured",
                                                  listed.file.string()));
                 return false;
             }
-        return !first.file.empty();
+        return !first.files.empty();
     }
 
     void report_unfed_inputs(const Workflow& workflow, const BatchWorkflow& listed) {
@@ -504,7 +552,7 @@ private:
         const Batch& batch = checked_.batch;
         bool has_any = false;
         for (const BatchScan& scan : batch.scans) {
-            if (scan.truth.file.empty()) continue;
+            if (scan.truth.files.empty()) continue;
             has_any = true;
             if (!batch.measure)
                 batch_diagnostics_.warning(
@@ -516,39 +564,78 @@ private:
                                      "scan");
     }
 
-    /// Names under `of` that no variant has, and a batch or a workflow of which nothing is measured.
+    /// Values under `of` that are not measured, and a batch or a workflow of which nothing is measured.
     void report_unmeasured() {
-        std::set<std::string> names;
+        std::set<std::string> steps;                 // that measure
         std::set<std::size_t> measured, unmeasured;  // workflows
         for (const BatchPart& part : checked_.parts) {
-            if (!truth_input_of(part.plan->workflow)) continue;
-            const auto is_measuring = [](const PlannedStep& step) { return !step.measures.empty(); };
-            (std::ranges::any_of(part.plan->steps, is_measuring) ? measured : unmeasured).insert(part.workflow);
-            for (const WorkflowInput& input : part.plan->workflow.inputs) names.insert(input.name);
+            if (!takes_truth(*part.plan)) continue;
+            unmeasured.insert(part.workflow);
             for (const PlannedVariant& variant : part.plan->variants)
                 for (const auto& [name, step] : variant.steps_by_name)
-                    if (part.plan->steps[step].measures.empty()) names.insert(name);
+                    if (is_of_batch(part.plan->steps[step])) {
+                        steps.insert(name);
+                        measured.insert(part.workflow);
+                    }
         }
-        if (measured.empty() && unmeasured.empty()) return;  // lists of scans that disagree on their truth
-        names.erase(truth_input);
-        const std::vector<std::string> known(names.begin(), names.end());
-        for (const Reference& reference : measuring_->of)
-            if (const std::string name = reference.text.substr(0, reference.text.find('.')); !names.contains(name))
-                batch_diagnostics_.error(reference.position, "no workflow has a step '{}' to measure; they have {}{}",
-                                         name, known.empty() ? "none" : enumerated(known), did_you_mean(name, known));
-        const PortSpec& port = *measuring_->spec.input(measuring_->spec.measures->value);
+        if (unmeasured.empty()) return;  // lists of scans that disagree on their truth
+        const std::vector<Reference>& of = checked_.batch.measure->of;
+        for (const Reference& value : of)
+            if (!steps.contains(measuring_step_name(value))) report_unmeasured(value);
+        const std::string kinds = kinds_text(*measuring_->input(measuring_->measures->value));
         if (measured.empty() && !batch_diagnostics_.has_errors())
-            batch_diagnostics_.error(measuring_->position,
+            batch_diagnostics_.error(checked_.batch.measure->position,
                                      "no workflow has an output of kind {}, so nothing would be measured; expected "
                                      "`of: [STEP]`",
-                                     kinds_text(port));
+                                     kinds);
         for (const std::size_t workflow : unmeasured)
             if (!measured.contains(workflow) && !measured.empty())
                 batch_diagnostics_.warning(
                     checked_.batch.workflows[workflow].position,
-                    fmt::format("nothing of '{}' is measured: {}", checked_.batch.workflows[workflow].file.string(),
-                                measuring_->of.empty() ? "it has no output of kind " + kinds_text(port)
-                                                       : "it has none of the steps under `of`"));
+                    fmt::format(
+                        "nothing of '{}' is measured: {}", checked_.batch.workflows[workflow].file.string(),
+                        of.empty() ? "it has no output of kind " + kinds : "it has none of the steps under `of`"));
+    }
+
+    void report_unmeasured(const Reference& value) {
+        const std::string name = value.text.substr(0, value.text.find('.'));
+        std::set<std::string> names;
+        for (const BatchPart& part : checked_.parts) {
+            const Plan& plan = *part.plan;
+            if (!takes_truth(plan)) continue;
+            for (const WorkflowInput& input : plan.workflow.inputs) names.insert(input.name);
+            for (const PlannedVariant& variant : plan.variants) {
+                for (const auto& [step_name, step] : variant.steps_by_name)
+                    if (!is_of_batch(plan.steps[step])) names.insert(step_name);
+                if (names.contains(name)) return report_unfit(value, plan, variant);
+            }
+        }
+        names.erase(truth_input);
+        const std::vector<std::string> known(names.begin(), names.end());
+        batch_diagnostics_.error(value.position, "no workflow has a step '{}' to measure; they have {}{}", name,
+                                 known.empty() ? "none" : enumerated(known), did_you_mean(name, known));
+    }
+
+    void report_unfit(const Reference& value, const Plan& plan, const PlannedVariant& variant) {
+        const std::map<std::string, std::string> no_names;
+        const WiringScope scope{plan, library_, variant.steps, variant.steps_by_name, no_names, false};
+        const std::optional<ValueSource> source = resolve(value, scope, batch_diagnostics_);
+        if (!source) return;
+        const bool is_list = !source->step && plan.workflow.inputs[source->input].list;
+        batch_diagnostics_.error(value.position, "'{}' is {}{}; {} measures {}", value.text,
+                                 is_list ? "a list of " : "", name_of(kind_of(plan, *source)), measuring_->name,
+                                 kinds_text(*measuring_->input(measuring_->measures->value)));
+    }
+
+    static bool takes_truth(const Plan& plan) {
+        const std::vector<WorkflowInput>& inputs = plan.workflow.inputs;
+        return !inputs.empty() && inputs.back().name == truth_input;
+    }
+    static bool is_of_batch(const PlannedStep& step) { return !step.file.empty(); }
+    static std::string measuring_step_name(const Reference& value) {
+        std::string name = std::string(measurement_prefix) + value.text;
+        std::ranges::replace(name, '.', '-');
+        return name;
     }
 
     /// Two cells must not write one file. Of many such files the first ten are reported.
@@ -596,7 +683,7 @@ private:
     const FilterLibrary& library_;
     Diagnostics batch_diagnostics_;
     CheckedBatch checked_;
-    std::optional<Measuring> measuring_;
+    const FilterSpec* measuring_ = nullptr;  // null: the batch does not measure
     std::set<std::string> declared_;
     std::set<std::string> first_inputs_, further_inputs_;  // names
     bool takes_scans_ = false, takes_points_ = false;
@@ -608,6 +695,17 @@ private:
 Batch parse_batch(const std::string& text, Diagnostics& diagnostics) {
     const YamlNode root = parse_yaml(text, diagnostics);
     return BatchParser(diagnostics).batch(root);
+}
+
+std::vector<std::string> measuring_filters(const FilterLibrary& library) {
+    std::vector<std::string> names = library.names();
+    std::erase_if(names, [&](const std::string& name) {
+        const FilterSpec& spec = *library.find(name);
+        return !spec.measures || !std::ranges::all_of(spec.inputs, [&](const PortSpec& port) {
+            return port.optional || port.name == spec.measures->value || port.name == spec.measures->truth;
+        });
+    });
+    return names;
 }
 
 bool is_batch(const std::string& text) {

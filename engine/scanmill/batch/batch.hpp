@@ -40,17 +40,12 @@ struct Limits {
 /// the cells that read it.
 struct BatchInput {
     std::vector<std::filesystem::path> files;
-    Position position;  ///< of the input's name
-};
+    LengthUnit unit = LengthUnit::unknown;  ///< unknown: the files' own
+    std::string frame;                      ///< {stem} replaced; empty: the files' own
+    Position position;                      ///< of the input's name
 
-struct BatchTruth {
-    std::filesystem::path file;  ///< empty: the scan has none. It need not exist
-    LengthUnit unit = LengthUnit::unknown;  ///< unknown: the file's own
-    std::string frame;                      ///< {stem} replaced; empty: the file's own
-    Position position;                      ///< of the key `truth`
-
-    bool same_file(const BatchTruth& other) const {
-        return file == other.file && unit == other.unit && frame == other.frame;
+    bool has_same_files(const BatchInput& other) const {
+        return files == other.files && unit == other.unit && frame == other.frame;
     }
 };
 
@@ -61,8 +56,8 @@ struct BatchScan {
     std::string frame;                   ///< {stem} replaced; empty: the workflow's or the file's own
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;     ///< empty: the pose is written in the batch
-    BatchTruth truth;
-    std::map<std::string, BatchInput> inputs;  ///< by the inputs' names
+    BatchInput truth;                          ///< no files: the scan has none
+    std::map<std::string, BatchInput> inputs;  ///< by the inputs' names; a checked batch that measures has the truth
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
     Position invalid_position;                     ///< of the key `invalid`
     Settings settings;                   ///< the scan's own, which override the batch's
@@ -73,7 +68,11 @@ struct BatchWorkflow {
     Position position;
 };
 
-/// `measure`: a step that measures is added for every value and every scan with a truth.
+/// The input that `measure` adds to the workflows of scans with a truth.
+inline constexpr const char* truth_input = "truth";
+
+/// `measure`: the workflows of scans with a truth get one more input, the truth, wired by `in` alone, and at their end
+/// a measuring step for every value, `measure-VALUE`. The workflows must not use these names.
 struct BatchMeasure {
     Position position;
     std::string filter;  ///< empty: the only installed one that measures
@@ -98,6 +97,9 @@ struct Batch {
 /// a further input is a warning. Names in `set` and `in` that no workflow declares, and everything about `measure` and
 /// `gate` that depends on filters, are found by check_batch().
 Batch parse_batch(const std::string& text, Diagnostics& diagnostics);
+
+/// The names of the filters that measure a value by a truth and need nothing else.
+std::vector<std::string> measuring_filters(const FilterLibrary& library);
 
 /// Whether the text is a batch rather than a workflow: it has the key `batch`.
 bool is_batch(const std::string& text);

@@ -65,8 +65,8 @@ private:
     std::vector<Gated> metrics_of(const GateRule& rule) {
         if (const std::size_t dot = rule.metric.find('.'); dot != std::string::npos)
             return of_step(rule, rule.metric.substr(0, dot), rule.metric.substr(dot + 1));
-        const auto is_measuring = [](const PlannedStep* step) { return !step->measures.empty(); };
-        std::vector<Gated> found = of_steps(rule.metric, is_measuring);
+        std::vector<Gated> found =
+            of_steps(rule.metric, [](const PlannedStep* step) { return is_measurement(step->label); });
         if (!found.empty()) return found;
         if (const auto property = properties_.find(rule.metric); property != properties_.end())
             return {property->second};

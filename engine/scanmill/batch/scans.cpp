@@ -408,7 +408,7 @@ private:
         static const char* const expected = "a file, as truth/{stem}.stl, or {path: truth/{stem}.stl, unit: mm}";
         const auto path = [&](const YamlNode& node) {
             take_files(node, "the truth", expected, scans,
-                       [](BatchScan& scan, const fs::path& file) { scan.truth.file = file; });
+                       [](BatchScan& scan, const fs::path& file) { scan.truth.files = {file}; });
         };
         for (BatchScan& scan : scans) scan.truth.position = entry.position;
         if (!entry.value.is_map()) return path(entry.value);

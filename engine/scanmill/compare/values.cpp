@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "scanmill/gate/gate.hpp"
+
 namespace scanmill {
 
 namespace {
@@ -33,7 +35,7 @@ std::vector<CellValue> values_of(const CellRecord& cell, const StepsByNode& step
     const auto add_steps = [&](bool measuring) {
         for (const std::size_t node : cell.nodes) {
             const auto found = steps.find(node);
-            if (found == steps.end() || found->second->measures.empty() == measuring) continue;
+            if (found == steps.end() || is_measurement(found->second->label) != measuring) continue;
             const StepRecord& step = *found->second;
             const CellValue::Of of = measuring ? CellValue::Of::measurement : CellValue::Of::step;
             add(values, of, step.label, step.metrics);

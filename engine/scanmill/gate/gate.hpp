@@ -7,8 +7,8 @@
 /// metric's unit; `exact` it must be equal. The costs `seconds`, `cpu-seconds` and `memory` take `+20 %`; `outputs` is
 /// `exact`: no output file may change a byte.
 ///
-/// A rule NAME is for the measurements of a cell that have this metric; else for the outputs that have it as a
-/// property; else for every step that reports it. A rule STEP.NAME is for that step.
+/// A rule NAME is for the measurements of a cell (see is_measurement()) that have this metric; else for the outputs
+/// that have it as a property; else for every step that reports it. A rule STEP.NAME is for that step.
 
 #include <optional>
 #include <string>
@@ -52,6 +52,11 @@ Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, 
 /// For the check of a batch, before any value is known. Throws Error as parse_tolerance() does, and for a rule that
 /// limits improvements: without a sign, or with the wrong one, although one direction is the better one.
 void require_rule_fits(std::string_view text, Unit unit, Better better);
+
+/// The labels of the steps that a batch's `measure` adds begin with it.
+inline constexpr std::string_view measurement_prefix = "measure-";
+/// Whether the numbers of the step with this label are measurements.
+inline bool is_measurement(std::string_view label) { return label.starts_with(measurement_prefix); }
 
 /// `seconds`, `cpu-seconds` and `memory`.
 bool is_cost(std::string_view metric);

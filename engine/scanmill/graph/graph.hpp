@@ -32,7 +32,7 @@ struct ScanFile {
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
-    /// Of a scan: its own files for the workflow's other inputs, the truth among them.
+    /// Of a scan: its own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
 };
 
@@ -123,7 +123,6 @@ struct RunCell {
     std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
-    std::filesystem::path truth{};  ///< that its measuring steps compare with; empty: nothing is measured
 };
 
 struct RunGraph {

@@ -189,7 +189,7 @@ private:
             if (!request_->only.empty() && std::ranges::find(request_->only, planned.name) == request_->only.end())
                 continue;
             if (!request_->until.empty() && !planned.steps_by_name.contains(request_->until)) continue;
-            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}, truth_of(file)};
+            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}};
             std::map<std::size_t, std::size_t> node_of_step;
             for (const std::size_t step : steps_to_run(planned)) {
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
@@ -287,11 +287,6 @@ private:
         return (file ? *file : request_->scans.front()).inputs.at(input);
     }
 
-    fs::path truth_of(const ScanFile* file) const {
-        const std::optional<std::size_t> input = truth_input_of(plan_->workflow);
-        return input ? files_of(plan_->workflow.inputs[*input].name, file).front().path : fs::path();
-    }
-
     std::size_t add_leaf(std::size_t input, std::size_t scan, const ScanFile& file, RunCell& cell) {
         const WorkflowInput& declared = plan_->workflow.inputs[input];
         RunNode node;
@@ -309,7 +304,8 @@ private:
                                                                  : declared.unit;
         node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
         node.leaf.pose = file.pose;
-        if (declared.kind == kind_of<PointCloud>())
+        if (declared.kind == kind_of<PointCloud>() ||
+            std::ranges::find(declared.also, kind_of<PointCloud>()) != declared.also.end())
             node.leaf.invalid = file.invalid != InvalidRows::by_format        ? file.invalid
                                 : request_->invalid != InvalidRows::by_format ? request_->invalid
                                                                               : declared.invalid;

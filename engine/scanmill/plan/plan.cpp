@@ -62,14 +62,13 @@ public:
         plan_.workflow = std::move(workflow);
     }
 
-    Plan plan(const Settings& settings, const Measuring* measuring) {
+    Plan plan(const Settings& settings) {
         settings_ = &settings;
         expand(plan_.workflow, settings, diagnostics_,
                [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
         for (const WorkflowOutput& output : plan_.workflow.outputs) check_template(output, diagnostics_);
         check_shared_files();
         check_folders();
-        if (measuring) add_measuring(*measuring);
         return std::move(plan_);
     }
 
@@ -103,6 +102,7 @@ private:
                 continue;
             }
             const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
+            if (step.syntax->may_be_left_out && !can_wire(*step.syntax, *spec, scope)) continue;
             const std::size_t index = add_step(step, *spec, scope);
             planned.steps.push_back(index);
             for (const std::string& name : names_of(step)) names.add(name, index);
@@ -110,7 +110,6 @@ private:
         const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
         for (const WorkflowOutput& output : plan_.workflow.outputs) plan_output(output, scope, planned);
         planned.steps_by_name = std::move(names.steps);
-        unusable_names_.push_back(std::move(names.unusable));
         return planned;
     }
 
@@ -145,6 +144,12 @@ private:
         return nullptr;
     }
 
+    static bool can_wire(const StepSyntax& step, const FilterSpec& spec, const WiringScope& scope) {
+        Diagnostics reasons("");
+        wire(step, spec, scope, reasons);
+        return !reasons.has_errors();
+    }
+
     /// Outputs that follow an input get the kind of the value wired to it.
     FilterSpec with_kinds(FilterSpec spec, const std::vector<PlannedInput>& inputs) const {
         for (PortSpec& output : spec.outputs)
@@ -155,8 +160,8 @@ private:
     }
 
     std::size_t add_step(const ExpandedStep& step, const FilterSpec& declared, const WiringScope& scope) {
-        ParameterSet set =
-            step_parameters(step, declared, {plan_.workflow.file, *settings_, diagnostics_, settings_diagnostics_});
+        const std::string& file = step.syntax->file.empty() ? plan_.workflow.file : step.syntax->file;
+        ParameterSet set = step_parameters(step, declared, {file, *settings_, diagnostics_, settings_diagnostics_});
         std::vector<PlannedInput> inputs = wire(*step.syntax, declared, scope, diagnostics_);
         const FilterSpec spec = with_kinds(declared, inputs);
         std::string key = structure_key(spec, set, inputs);
@@ -169,8 +174,7 @@ private:
                                    std::move(inputs),
                                    {},
                                    std::move(key),
-                                   {},
-                                   {}});
+                                   step.syntax->file});
         std::vector<PlannedExpectation>& expectations = plan_.steps[found->second].expectations;
         for (const Expectation& written : step.syntax->expect) {
             if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
@@ -214,109 +218,6 @@ private:
         variant.outputs.push_back({output.file, output.position, *source, output.source.text});
     }
 
-    /// A value to measure, by the name that the workflow or the batch refers to it.
-    struct Measured {
-        std::string name;
-        ValueSource source;
-    };
-
-    static std::string step_name(const Measured& measured) {
-        std::string name = "measure-" + measured.name;
-        std::ranges::replace(name, '.', '-');
-        return name;
-    }
-
-    void add_measuring(const Measuring& measuring) {
-        std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
-        if (const auto taken = std::ranges::find(inputs, truth_input, &WorkflowInput::name); taken != inputs.end())
-            diagnostics_.error(taken->position,
-                               "the input has the name '{}', which the batch's `measure` adds; rename the input",
-                               truth_input);
-        std::vector<std::vector<Measured>> values;  // of every variant
-        for (std::size_t i = 0; i < plan_.variants.size(); ++i) {
-            const PlannedVariant& variant = plan_.variants[i];
-            values.push_back(measured(variant, unusable_names_[i], measuring));
-            for (const Measured& each : values.back())
-                if (const auto taken = variant.steps_by_name.find(step_name(each));
-                    taken != variant.steps_by_name.end())
-                    diagnostics_.error(plan_.steps[taken->second].position,
-                                       "the step has the name '{}', which the batch's `measure` adds; rename the step",
-                                       taken->first);
-        }
-        if (diagnostics_.has_errors()) return;
-        const PortSpec& truth = *measuring.spec.input(measuring.spec.measures->truth);
-        const ValueSource from_truth{std::nullopt, inputs.size(), ""};
-        WorkflowInput input;
-        input.name = truth_input;
-        input.position = measuring.position;
-        input.kind = truth.kind;
-        input.also = truth.also;
-        input.is_truth = true;
-        inputs.push_back(std::move(input));
-        for (std::size_t i = 0; i < plan_.variants.size(); ++i)
-            for (const Measured& each : values[i]) {
-                PlannedVariant& variant = plan_.variants[i];
-                variant.steps.push_back(measuring_step(each, from_truth, measuring));
-                variant.steps_by_name.emplace(step_name(each), variant.steps.back());
-            }
-    }
-
-    /// Every value once, by the first of its names.
-    std::vector<Measured> measured(const PlannedVariant& variant, const std::map<std::string, std::string>& unusable,
-                                   const Measuring& measuring) const {
-        const PortSpec& port = *measuring.spec.input(measuring.spec.measures->value);
-        std::vector<Measured> all;
-        const auto add = [&](const std::string& name, const ValueSource& source) {
-            if (std::ranges::find(all, source, &Measured::source) == all.end()) all.push_back({name, source});
-        };
-        if (measuring.of.empty())
-            for (const PlannedOutput& output : variant.outputs)
-                if (port.takes(kind_of(plan_, output.source))) add(output.name, output.source);
-        const WiringScope scope{plan_, library_, variant.steps, variant.steps_by_name, unusable, false};
-        for (const Reference& reference : measuring.of) {
-            const std::string name = reference.text.substr(0, reference.text.find('.'));
-            if (!variant.steps_by_name.contains(name) && !unusable.contains(name) && !has_input(name)) continue;
-            const std::optional<ValueSource> source = resolve(reference, scope, *settings_diagnostics_);
-            if (!source) continue;
-            const bool is_list = !source->step && plan_.workflow.inputs[source->input].list;
-            if (const Kind kind = kind_of(plan_, *source); is_list || !port.takes(kind))
-                settings_diagnostics_->error(reference.position, "'{}' is {}{}; {} measures {}", reference.text,
-                                             is_list ? "a list of " : "", name_of(kind), measuring.spec.name,
-                                             kinds_text(port));
-            else
-                add(reference.text, *source);
-        }
-        return all;
-    }
-
-    bool has_input(const std::string& name) const {
-        const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
-        return std::ranges::find(inputs, name, &WorkflowInput::name) != inputs.end();
-    }
-
-    std::size_t measuring_step(const Measured& measured, const ValueSource& truth, const Measuring& measuring) {
-        const MeasureSpec& ports = *measuring.spec.measures;
-        std::vector<PlannedInput> inputs;
-        for (const PortSpec& port : measuring.spec.inputs) {
-            if (port.name == ports.value) inputs.push_back({port.name, {measured.source}});
-            if (port.name == ports.truth) inputs.push_back({port.name, {truth}});
-        }
-        const FilterSpec spec = with_kinds(measuring.spec, inputs);
-        std::string key = structure_key(spec, measuring.parameters, inputs);
-        const auto [found, is_new] = step_of_key_.emplace(key, plan_.steps.size());
-        if (is_new)
-            plan_.steps.push_back({step_name(measured),
-                                   measuring.position,
-                                   spec,
-                                   measuring.parameters,
-                                   std::move(inputs),
-                                   {},
-                                   std::move(key),
-                                   measured.name,
-                                   measuring.file});
-        return found->second;
-    }
-
     void check_shared_files() {
         struct Writer {
             const PlannedVariant* variant;
@@ -358,20 +259,13 @@ private:
     const Settings* settings_ = nullptr;
     Plan plan_;
     std::map<std::string, std::size_t> step_of_key_;
-    std::vector<std::map<std::string, std::string>> unusable_names_;  // of every variant
 };
 
 }  // namespace
 
 Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
-               Diagnostics* settings_diagnostics, const Measuring* measuring) {
-    return Planner(std::move(workflow), library, diagnostics, settings_diagnostics).plan(settings, measuring);
-}
-
-std::optional<std::size_t> truth_input_of(const Workflow& workflow) {
-    const auto found = std::ranges::find(workflow.inputs, true, &WorkflowInput::is_truth);
-    if (found == workflow.inputs.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - workflow.inputs.begin());
+               Diagnostics* settings_diagnostics) {
+    return Planner(std::move(workflow), library, diagnostics, settings_diagnostics).plan(settings);
 }
 
 std::string workflow_name(const Plan& plan) {

@@ -52,7 +52,6 @@ struct PlannedStep {
     std::vector<PlannedExpectation> expectations;
     /// Equal for steps with the same filter, parameters and upstream steps.
     std::string structure_key;
-    std::string measures{};  ///< the value that it measures by its truth, as "surface"; empty: a step of the workflow
     std::string file{};  ///< that `position` is in; empty: the workflow's
 };
 
@@ -77,31 +76,12 @@ struct Plan {
     std::vector<PlannedVariant> variants;
 };
 
-/// Measuring steps that a batch adds to a workflow.
-struct Measuring {
-    FilterSpec spec;  ///< of the measuring filter
-    ParameterSet parameters;
-    std::string file;  ///< the batch
-    Position position;
-    std::vector<Reference> of;  ///< the values to measure; empty: the workflow's outputs that the filter accepts
-};
-
-/// The name of the input that measuring steps add.
-inline constexpr const char* truth_input = "truth";
-
 /// Checks the workflow against the installed filters; with errors in `diagnostics` the plan must not be run. When the
 /// settings come from a file, `settings_diagnostics` belongs to that file: values that their parameter refuses are
 /// reported there, and relative paths among the values count from that file's folder. Otherwise they are reported at
 /// the step, and relative paths count from the working folder.
-///
-/// With `measuring`, the workflow gets one more input, `truth`, and every variant the steps `measure-<value>` for the
-/// values that it has; nothing else is wired to them. The workflow must not use these names. Wrong references in
-/// `measuring` are reported to `settings_diagnostics`, which must not be null then.
 Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
-               Diagnostics* settings_diagnostics = nullptr, const Measuring* measuring = nullptr);
-
-/// The workflow's input that the truth feeds; nothing without measuring steps.
-std::optional<std::size_t> truth_input_of(const Workflow& workflow);
+               Diagnostics* settings_diagnostics = nullptr);
 
 /// The workflow's own name, else that of its file.
 std::string workflow_name(const Plan& plan);

@@ -133,7 +133,7 @@ private:
         const std::vector<WorkflowInput>& inputs = scope_.plan.workflow.inputs;
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < inputs.size(); ++i)
-            if (inputs[i].kind == port.kind && (port.list || !inputs[i].list)) found.push_back(i);
+            if (inputs[i].kind == port.kind && !inputs[i].by_name && (port.list || !inputs[i].list)) found.push_back(i);
         if (found.size() == 1) return {{std::nullopt, found.front(), ""}};
         if (found.size() > 1) {
             std::vector<std::string> names;

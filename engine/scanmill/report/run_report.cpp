@@ -26,7 +26,6 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
         step.filter_version = planned->spec.version;
         step.build = std::move(build);
         step.authored = texts_of(planned->parameters);
-        step.measures = planned->measures;
     } else {
         step.file = node.leaf.file.string();
         step.authored = declared_of(node.leaf);
@@ -59,7 +58,6 @@ CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellRep
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
-    record.truth = cell.truth.string();
     for (const OutputReport& output : report.outputs) record.outputs.push_back(output_record(output));
     return record;
 }

@@ -43,7 +43,6 @@ struct StepRecord {
     Texts authored, resolved;
     Metrics metrics, properties;
     std::vector<std::string> warnings;
-    std::string measures;
 };
 constexpr auto fields(const StepRecord*) {
     using R = StepRecord;
@@ -67,8 +66,7 @@ constexpr auto fields(const StepRecord*) {
         field("parameters", &R::resolved, "Parameters as the filter got them, in the scan's unit.").optional(),
         field("metrics", &R::metrics, "Numbers that the filter reported; null: not finite.").by_name().optional(),
         field("properties", &R::properties, "Of its first output, or of the file that it read.").by_name().optional(),
-        field("warnings", &R::warnings).optional(),
-        field("measures", &R::measures, "What it measures by the cell's truth.").optional()};
+        field("warnings", &R::warnings).optional()};
 }
 
 struct OutputRecord {
@@ -114,7 +112,6 @@ struct CellRecord {
     std::vector<std::size_t> nodes;
     std::vector<OutputRecord> outputs;
     std::vector<std::string> doubts;
-    std::string truth;
     std::vector<CostRecord> costs;
 };
 constexpr auto fields(const CellRecord*) {
@@ -128,7 +125,6 @@ constexpr auto fields(const CellRecord*) {
                       field("steps", &R::nodes, "Numbers of its steps."),
                       field("outputs", &R::outputs),
                       field("doubts", &R::doubts).optional(),
-                      field("truth", &R::truth, "The file that it is measured by.").optional(),
                       field("costs", &R::costs, "One per pass in which all of its steps ran.").optional()};
 }
 

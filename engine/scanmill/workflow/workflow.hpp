@@ -70,6 +70,8 @@ struct StepSyntax {
     std::vector<InputWiring> in;
     std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
     std::vector<Expectation> expect;
+    std::string file{};  ///< that the positions are in; empty: the workflow's
+    bool may_be_left_out = false;  ///< of variants without the values that `in` names
 
     /// How other steps refer to this one.
     const std::string& name() const { return id.empty() ? filter : id; }
@@ -102,8 +104,8 @@ struct WorkflowInput {
     std::string frame;  ///< may contain {stem}; empty: the file's own
     InvalidRows invalid = InvalidRows::by_format;  ///< of points
     std::string help;
-    std::vector<Kind> also{};  ///< other kinds that its file may hold; of a truth that a batch adds
-    bool is_truth = false;  ///< a batch added it
+    std::vector<Kind> also{};  ///< other kinds that its file may hold
+    bool by_name = false;      ///< wired by `in` alone
 };
 
 struct WorkflowParameter {

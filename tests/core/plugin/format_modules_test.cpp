@@ -19,36 +19,36 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const FormatManifest manifest{abi_text(), {"ABC", {"abc", "abcd"}, {"#ABC", "abc "}, {kind_of<PointCloud>()}}};
+const FormatManifest abc_manifest{abi_text(), {"ABC", {"abc", "abcd"}, {"#ABC", "abc "}, {kind_of<PointCloud>()}}};
 
 std::string refusal(const Format& row) {
     return sentence_of([&] { row.read({"a.abc", "#ABC"}, {}); });
 }
 
 TEST(FormatManifest, ComesBackTheSame) {
-    const FormatManifest back = parse_format_manifest(to_json_text(manifest));
-    EXPECT_EQ(back.spec, manifest.spec);
-    EXPECT_EQ(back.abi, manifest.abi);
+    const FormatManifest back = parse_format_manifest(to_json_text(abc_manifest));
+    EXPECT_EQ(back.spec, abc_manifest.spec);
+    EXPECT_EQ(back.abi, abc_manifest.abi);
 }
 
 TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
-    FormatManifest written = manifest;
+    FormatManifest written = abc_manifest;
     written.spec.reads = false;
     EXPECT_EQ(parse_format_manifest(to_json_text(written)).spec, written.spec);
-    EXPECT_NE(written.spec, manifest.spec);
+    EXPECT_NE(written.spec, abc_manifest.spec);
 }
 
 TEST(FormatManifest, AnythingElse_IsRefused) {
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is not a manifest"));
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));
-    FormatManifest nameless = manifest;
+    FormatManifest nameless = abc_manifest;
     nameless.spec.extensions.clear();
     EXPECT_THROW(parse_format_manifest(to_json_text(nameless)), Error);
 }
 
 TEST(FormatModules, Recognition_NeedsNoCode) {
     const TemporaryFolder folder;
-    folder.write("scanmill-abc.json", to_json_text(manifest));
+    folder.write("scanmill-abc.json", to_json_text(abc_manifest));
     folder.write("scanmill-abc.so", "no code at all");
     const std::vector<Format> rows = format_modules(folder.path());
     ASSERT_EQ(rows.size(), 1u);
@@ -62,7 +62,7 @@ TEST(FormatModules, Recognition_NeedsNoCode) {
 
 TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
     const TemporaryFolder folder;
-    FormatManifest written = manifest;
+    FormatManifest written = abc_manifest;
     written.spec.reads = false;
     folder.write("scanmill-abc.json", to_json_text(written));
     folder.write("scanmill-abc.so", "no code at all");
@@ -75,8 +75,8 @@ TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
 
 TEST(FormatModules, UnusableOnes_HaveARowWithTheReason) {
     const TemporaryFolder folder;
-    folder.write("scanmill-alone.json", to_json_text(manifest));
-    FormatManifest foreign = manifest;
+    folder.write("scanmill-alone.json", to_json_text(abc_manifest));
+    FormatManifest foreign = abc_manifest;
     foreign.abi = "another compiler";
     folder.write("scanmill-foreign.json", to_json_text(foreign));
     folder.write("scanmill-torn.json", "{\"scanmill-format\": 1,");

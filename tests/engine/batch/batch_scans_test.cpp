@@ -197,11 +197,19 @@ TEST_F(BatchScans, MissingTruthOrFurtherInput_IsAWarningForEachScan) {
                 ElementsAre(AllOf(StartsWith("b:3:36: warning: "),
                                   HasSubstr("truth/a.stl': there is no such file; expected the truth"),
                                   HasSubstr("scans/a.ply"))));
-    EXPECT_EQ(batch_.scans[0].truth.file, folder_ / "truth/a.stl");
-    EXPECT_EQ(batch_.scans[1].truth.file, folder_ / "truth/b.stl");
+    EXPECT_EQ(batch_.scans[0].truth.files.front(), folder_ / "truth/a.stl");
+    EXPECT_EQ(batch_.scans[1].truth.files.front(), folder_ / "truth/b.stl");
     EXPECT_THAT(scans("[{path: scans/a.ply, in: {to: [scans/b.ply, gone.ply]}}]"),
                 ElementsAre(AllOf(StartsWith("b:3:52: warning: "), HasSubstr("expected the input 'to' of"))));
     EXPECT_THAT(batch_.scans[0].inputs.at("to").files, SizeIs(2));
+}
+
+TEST_F(BatchScans, StemOfACompressedScan_HasNeitherExtension) {
+    folder_.write("packed/part.ply.gz", "x");
+    folder_.write("truth/part.stl", "x");
+    EXPECT_THAT(scans("[{path: packed/part.ply.gz, frame: 'f-{stem}', truth: 'truth/{stem}.stl'}]"), IsEmpty());
+    EXPECT_EQ(batch_.scans[0].truth.files.front(), folder_ / "truth/part.stl");
+    EXPECT_EQ(batch_.scans[0].frame, "f-part");
 }
 
 TEST_F(BatchScans, FolderOfAScan_IsAPlaceholderOfItsFiles) {
@@ -213,8 +221,8 @@ TEST_F(BatchScans, FolderOfAScan_IsAPlaceholderOfItsFiles) {
     folder_.write("poses/two.json", json(pose(2)));
     EXPECT_THAT(scans("[{path: parts/*/scan.ply, truth: 'truth/{folder}.stl', pose: 'poses/{folder}.json'}]"),
                 IsEmpty());
-    EXPECT_EQ(batch_.scans[0].truth.file, folder_ / "truth/one.stl");
-    EXPECT_EQ(batch_.scans[1].truth.file, folder_ / "truth/two.stl");
+    EXPECT_EQ(batch_.scans[0].truth.files.front(), folder_ / "truth/one.stl");
+    EXPECT_EQ(batch_.scans[1].truth.files.front(), folder_ / "truth/two.stl");
     EXPECT_EQ(batch_.scans[1].pose->translation.x(), 2);
 }
 

@@ -47,13 +47,13 @@ gate: {hausdorff: +1 %, repeats: 2}
     EXPECT_EQ(b.pose->translation, Vec3(2, 0, 0));
     EXPECT_EQ(b.pose->unit, LengthUnit::metre);
     EXPECT_EQ(b.pose->to, "part");
-    EXPECT_EQ(b.truth.file, folder_ / "truth/b.stl");
+    EXPECT_EQ(b.truth.files.front(), folder_ / "truth/b.stl");
     EXPECT_EQ(b.truth.unit, LengthUnit::unknown) << "its own, not that of the scan";
     EXPECT_EQ(b.truth.position, (Position{5, 72}));
     EXPECT_THAT(b.settings.at("n").values.at(0).literal.items, ElementsAre("2"));
     EXPECT_EQ(batch_.scans[2].unit, LengthUnit::unknown);
     EXPECT_FALSE(batch_.scans[2].pose);
-    EXPECT_EQ(batch_.scans[2].truth.file, folder_ / "truth/c.ply");
+    EXPECT_EQ(batch_.scans[2].truth.files.front(), folder_ / "truth/c.ply");
     EXPECT_EQ(batch_.scans[2].truth.unit, LengthUnit::centimetre);
     EXPECT_EQ(batch_.scans[2].truth.frame, "t-d");
     EXPECT_THAT(batch_.scans[2].inputs.at("to").files, ElementsAre(folder_ / "e.ply"));

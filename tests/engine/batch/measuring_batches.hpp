@@ -49,11 +49,11 @@ protected:
                ", unit: mm, truth: 'truth/{stem}.stl'}]\nworkflows: w.yaml\n" + rest;
     }
     const Plan& plan(std::size_t part = 0) const { return *checked_.parts.at(part).plan; }
-    /// "label <- measured value", of every measuring step of the plan.
+    /// "label <- value at the first port", of every measuring step of the plan.
     static std::vector<std::string> measuring(const Plan& plan) {
         std::vector<std::string> found;
         for (const PlannedStep& step : plan.steps)
-            if (!step.measures.empty()) found.push_back(step.label + " <- " + step.measures);
+            if (step.spec.measures) found.push_back(step.label + " <- " + describe(plan, step.inputs[0].sources[0]));
         return found;
     }
 };

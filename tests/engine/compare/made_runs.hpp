@@ -48,7 +48,6 @@ inline CellRecord& add_cell(RunDetails& run, const std::string& scan, const std:
     surface.metrics = {{{"flips", 12, Unit::count}}, LengthUnit::millimetre};
     surface.properties = {{{"genus", 1, Unit::count}, {"triangles", 100, Unit::count}}, LengthUnit::millimetre};
     measure.filter = "measure";
-    measure.measures = "surface";
     measure.metrics = {{{"hausdorff", hausdorff, Unit::length},
                         {"f-score", 0.9, Unit::ratio},
                         {"closed", 1, Unit::boolean},

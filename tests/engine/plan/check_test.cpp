@@ -200,11 +200,11 @@ TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
 
 TEST_F(Check, OutputNamesLongerThanAnyFileSystemTakes_AreErrors) {
     const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs:\n";
-    const auto output = [&](std::size_t bytes) {
+    const auto findings_of = [&](std::size_t bytes) {
         return findings(head + "  'a/{scan}" + std::string(bytes - 4, 'x') + ".ply': thin\n");
     };
-    EXPECT_THAT(output(255), IsEmpty());
-    EXPECT_THAT(output(256), ElementsAre(HasSubstr("a file's name has 256 bytes; expected at most 255")));
+    EXPECT_THAT(findings_of(255), IsEmpty());
+    EXPECT_THAT(findings_of(256), ElementsAre(HasSubstr("a file's name has 256 bytes; expected at most 255")));
 }
 
 TEST_F(Check, OutputThatIsAnothersFolder_IsAnError) {

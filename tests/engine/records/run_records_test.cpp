@@ -68,7 +68,6 @@ StepRecord some_step(std::size_t node) {
     step.effort.threads = 4;
     step.attempts = 2;
     step.effort.log = {"first line", "last line"};
-    step.measures = "surface";
     return step;
 }
 
@@ -87,7 +86,6 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
                         1.5,        {0, 2},  {},        {"a: b"}};
         cell.outputs = {{"out/a.ply", "mesh", Outcome::ok, {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
                         {"out/b.ply", "mesh", Outcome::failed, {}, "", 0, "out/b.ply.previous"}};
-        cell.truth = "truth/a.stl";
         cell.costs = {{1.5, 2.5, 3'000'000'000}, {0.5, 0.25, 7}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
@@ -137,12 +135,10 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(run.cells[0].outputs[0].sha256, "c0ffee");
     EXPECT_EQ(run.cells[0].outputs[0].bytes, 3'000'000'000);
     EXPECT_EQ(run.cells[0].outputs[1].moved_to, "out/b.ply.previous");
-    EXPECT_EQ(run.cells[0].truth, "truth/a.stl");
     ASSERT_EQ(run.cells[0].costs.size(), 2u);
     EXPECT_EQ(run.cells[0].costs[0].peak_memory, 3'000'000'000);
     EXPECT_EQ(run.cells[0].costs[1].cpu_seconds, 0.25);
     EXPECT_EQ(run.start.gate, some_start().gate);
-    EXPECT_EQ(run.steps[0].measures, "surface");
 }
 
 /// Rows of cells and steps of two runs may alternate where folders cannot be locked.
