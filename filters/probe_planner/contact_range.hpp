@@ -15,9 +15,9 @@
 /// result depends on the processor.
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "scanmill/base/elementary.hpp"
-#include "scanmill/data/probes.hpp"
 
 namespace scanmill::probing {
 
@@ -28,6 +28,11 @@ using elementary::turn_of;
 /// In [0, pi]. Pre: |cosine| <= 1.
 double arc_cosine(double cosine);
 
+/// Radians. NaN where no direction is admissible.
+struct AngleRange {
+    double min = std::numeric_limits<double>::quiet_NaN();
+    double max = std::numeric_limits<double>::quiet_NaN();
+};
 bool is_empty(const AngleRange& range);
 
 /// The directions that meet the edge first for every T with |T| <= error: |phi| <= acos(error / radius) - alpha/2.

@@ -158,13 +158,17 @@ public:
     /// One touch, or two from different directions.
     std::vector<ProbeTouch> plan() {
         if (!(reference_.interior_angle < pi - rounding)) return refused(ProbeReason::concave);
-        touch_.range = range_of_disc(reference_.interior_angle, settings_.probe.radius, settings_.error);
+        range_ = range_of_disc(reference_.interior_angle, settings_.probe.radius, settings_.error);
         if (reference_.assumed)
-            touch_.known_range =
+            known_range_ =
                 range_on_left_face(reference_.interior_angle, settings_.probe.radius, settings_.error, beyond_);
+        touch_.phi_min = range_.min;
+        touch_.phi_max = range_.max;
+        touch_.phi_known_min = known_range_.min;
+        touch_.phi_known_max = known_range_.max;
         const std::vector<double> candidates = candidate_angles();
         if (candidates.empty() || !passes_hole(candidates.front())) return refused(ProbeReason::too_narrow);
-        if (settings_.two_directions && !is_empty(touch_.range))
+        if (settings_.two_directions && !is_empty(range_))
             if (std::vector<ProbeTouch> two = two_directions(); !two.empty()) return two;
 
         ProbeReason reason = ProbeReason::too_tilted;
@@ -181,7 +185,7 @@ public:
     static void try_positions(const Settings& settings, const ReferencePoint& reference, ProbeTouch& touch,
                               Random random) {
         const EdgeFirst edge_first(touch.interior_angle, settings.probe.radius, touch.phi);
-        const bool on_face = is_empty(touch.range) && touch.assumed;
+        const bool on_face = is_empty({touch.phi_min, touch.phi_max}) && touch.assumed;
         const Vec2 face = on_left_face(touch.interior_angle, 1);
         const double beyond = std::min(reference.beyond, settings.error);
         int missed = 0;
@@ -208,8 +212,8 @@ private:
     /// The best first: from the preferred angle outwards in steps of 1 degree.
     std::vector<double> candidate_angles() const {
         if (settings_.approach) return {*settings_.approach};
-        const bool by_disc = !is_empty(touch_.range);
-        const AngleRange& range = by_disc ? touch_.range : touch_.known_range;
+        const bool by_disc = !is_empty(range_);
+        const AngleRange& range = by_disc ? range_ : known_range_;
         if (is_empty(range)) return {};
         const double middle = by_disc ? 0 : (range.min + range.max) / 2;
         std::vector<double> angles{middle};
@@ -273,7 +277,7 @@ private:
 
     std::vector<ProbeTouch> two_directions() const {
         constexpr double share = 0.9, most = 30 * degree, least_between = 10 * degree;
-        const double phi = std::min(share * touch_.range.max, most);
+        const double phi = std::min(share * range_.max, most);
         if (2 * phi < least_between - rounding) return {};
         std::vector<ProbeTouch> touches;
         for (const double angle : {phi, -phi}) {
@@ -291,6 +295,7 @@ private:
     const double edge_reach_;  ///< from T to the edge in the mesh, at most
     const double near_, beyond_;
     Vec3 bisector_, across_;
+    AngleRange range_, known_range_;
     ProbeTouch touch_;
 };
 

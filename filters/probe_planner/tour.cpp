@@ -153,14 +153,13 @@ double add_moves(ProbePlan& plan, const std::vector<u32>& tour, const Machine& m
             is_straight[i] = machine.is_move_free(from(i), plan.touches[tour[i]].start);
     });
 
-    Array<Vec3> path;
     double travel = 0;
     const auto add = [&](ProbeMoveType type, u32 row, std::initializer_list<Vec3> points) {
-        const auto begin = static_cast<u32>(path.size());
+        Array<Vec3> path;
         for (const Vec3& point : points)
-            if (path.size() == begin || path.back() != point) path.push_back(point);
-        plan.moves.push_back({type, row, begin, static_cast<u32>(path.size())});
-        travel += length_of(std::span<const Vec3>(path).subspan(begin));
+            if (path.empty() || path.back() != point) path.push_back(point);
+        travel += length_of(path);
+        plan.moves.push_back({type, row, std::move(path)});
     };
     for (std::size_t i = 0; i < tour.size(); ++i) {
         ProbeTouch& touch = plan.touches[tour[i]];
@@ -173,7 +172,6 @@ double add_moves(ProbePlan& plan, const std::vector<u32>& tour, const Machine& m
         add(ProbeMoveType::approach, tour[i], {touch.start, touch.centre});
         add(ProbeMoveType::retract, tour[i], {touch.centre, touch.start});
     }
-    plan.path = std::move(path);
     return travel;
 }
 

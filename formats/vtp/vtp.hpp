@@ -19,10 +19,10 @@
 /// Probes: every touch is a cell (`Verts`, which come first), and every direction (from the touch to the start of its
 /// approach) and every move is a polyline (`Lines`) with points of its own. Point data: `direction`, the approach
 /// direction at the touches, zero elsewhere. Cell data: `type`, whose names are the field data `type_names`: 0 touch,
-/// 1 direction, 2 clearance, 3 approach, 4 retract; and of the cell's touch `touch`, `feature`, `reason` (names:
-/// `reason_names`), `interior_angle` in radians, `assumed`, 0 or 1, `phi` in radians, `false_share`, `contact` (names:
-/// `contact_names`), `contact_distance` and `order`. Where the touch is not made, numbers that it does not have are
-/// NaN.
+/// 1 direction, 2 clearance, 3 approach, 4 retract; and every field of the cell's touch that is a number, in radians if
+/// it is an angle: `touch`, `feature`, `interior_angle`, `assumed` (0 or 1), `phi_min` … `phi`, `reason` (names:
+/// `reason_names`), `false_share`, `contact` (names: `contact_names`), `contact_distance`, `order`. Where the touch is
+/// not made, numbers that it does not have are NaN.
 
 #include "scanmill/formats/common/format.hpp"
 

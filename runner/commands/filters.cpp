@@ -16,13 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json declaration_json(const FilterSpec& spec) {
-    Json json = Json::parse(to_json_text({"", spec}));
-    json.erase("scanmill-manifest");
-    json.erase("abi");
-    return json;
-}
-
 std::string kinds(const std::vector<PortSpec>& ports) {
     std::string text;
     for (const PortSpec& port : ports)

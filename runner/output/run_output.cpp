@@ -11,8 +11,8 @@
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/kinds/value.hpp"
 #include "scanmill/kinds/document.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
 

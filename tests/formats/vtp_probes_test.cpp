@@ -26,8 +26,8 @@ TEST(VtpProbes, TouchesDirectionsAndMoves_AreCellsWithTheirTypes) {
     plan.touches[1].touch = 5;
     plan.touches[1].position = Vec3(1, 0, 0);
     plan.touches[1].reason = ProbeReason::concave;
-    plan.moves = {{ProbeMoveType::clearance, 0, 0, 3}, {ProbeMoveType::approach, 0, 3, 5}};
-    plan.path = {Vec3(9, 0, 9), Vec3(0, 0, 9), Vec3(0, 0, 3), Vec3(0, 0, 3), Vec3(0, 0, 1)};
+    plan.moves = {{ProbeMoveType::clearance, 0, {Vec3(9, 0, 9), Vec3(0, 0, 9), Vec3(0, 0, 3)}},
+                  {ProbeMoveType::approach, 0, {Vec3(0, 0, 3), Vec3(0, 0, 1)}}};
     const auto data = through_vtp(plan);
     EXPECT_THAT(cells_in(data->GetVerts()), ElementsAre(ElementsAre(0), ElementsAre(1)));
     EXPECT_THAT(cells_in(data->GetLines()), ElementsAre(ElementsAre(2, 3), ElementsAre(4, 5, 6), ElementsAre(7, 8)));

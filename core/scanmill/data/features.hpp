@@ -10,6 +10,7 @@
 namespace scanmill {
 
 enum class FeatureType : u8 { outer_boundary, hole, crease };
+constexpr std::array<std::string_view, 3> names_of(const FeatureType*) { return {"outer boundary", "hole", "crease"}; }
 
 struct FeaturePolyline {
     FeatureType type;
@@ -18,6 +19,10 @@ struct FeaturePolyline {
     /// The polyline is vertices[begin] … vertices[end - 1] of the graph.
     u32 begin, end;
 };
+constexpr auto fields(const FeaturePolyline*) {
+    return std::tuple{field("type", &FeaturePolyline::type), field("closed", &FeaturePolyline::closed),
+                      field("begin", &FeaturePolyline::begin), field("end", &FeaturePolyline::end)};
+}
 
 struct FeatureGraph {
     Frame frame;
@@ -32,5 +37,14 @@ struct FeatureGraph {
     /// Indices into positions, ascending.
     Buffer<u32> corners;
 };
+constexpr auto fields(const FeatureGraph*) {
+    return std::tuple{field("frame", &FeatureGraph::frame),
+                      field("positions", &FeatureGraph::positions).means(Meaning::position),
+                      field("polylines", &FeatureGraph::polylines),
+                      field("vertices", &FeatureGraph::vertices),
+                      field("left-normals", &FeatureGraph::left_normals).means(Meaning::direction),
+                      field("right-normals", &FeatureGraph::right_normals).means(Meaning::direction),
+                      field("corners", &FeatureGraph::corners)};
+}
 
 }  // namespace scanmill

@@ -12,6 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "scanmill/record/fields.hpp"
+
 namespace scanmill {
 
 using Vec3 = Eigen::Vector3d;
@@ -33,6 +35,11 @@ struct Frame {
 
     bool operator==(const Frame&) const = default;
 };
+/// Without the origin: JSON has world coordinates.
+constexpr auto fields(const Frame*) {
+    return std::tuple{field("unit", &Frame::unit).nullable(),
+                      field("frame", &Frame::name, "The name of the coordinate system; null: it has none.").nullable()};
+}
 
 /// Throws Error if the units differ, or the names if both have one. `one` and `other` are what the user calls the
 /// values, in the singular or plural: "the plan is", "the mesh". Origins may differ.

@@ -29,6 +29,16 @@ struct TriangleMesh {
     /// Sorted, without repeats.
     Buffer<Edge> sharp_edges;
 };
+constexpr auto fields(const TriangleMesh*) {
+    return std::tuple{field("frame", &TriangleMesh::frame),
+                      field("positions", &TriangleMesh::positions).means(Meaning::position),
+                      field("triangles", &TriangleMesh::triangles),
+                      field("vertex-columns", &TriangleMesh::vertex_columns),
+                      field("face-columns", &TriangleMesh::face_columns),
+                      field("edges", &TriangleMesh::edges),
+                      field("edge-columns", &TriangleMesh::edge_columns),
+                      field("sharp-edges", &TriangleMesh::sharp_edges)};
+}
 
 /// Throws Error if an index is out of range or a column has a wrong number of rows.
 void require_consistent(const TriangleMesh& mesh);

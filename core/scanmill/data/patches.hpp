@@ -29,12 +29,17 @@ enum class PatchKind : u8 {
     continuation
 };
 
+constexpr std::array<std::string_view, 4> names_of(const PatchKind*) {
+    return {"face", "edge", "sharp", "continuation"};
+}
+
 /// What F is in a tetrahedron with two rows.
 enum class Combine : u8 {
     none,  ///< one row
     max,  ///< the larger function, at a convex edge
     min  ///< the smaller function, at a concave edge
 };
+constexpr std::array<std::string_view, 3> names_of(const Combine*) { return {"none", "max", "min"}; }
 
 struct PatchComplex {
     /// In `edges`: the tetrahedron is over a triangle.
@@ -57,5 +62,15 @@ struct PatchComplex {
     /// #tetrahedra: the other row with the same four points, whose partner is this one; or no_partner.
     Buffer<u32> partners;
 };
+constexpr auto fields(const PatchComplex*) {
+    return std::tuple{field("frame", &PatchComplex::frame),
+                      field("positions", &PatchComplex::positions).means(Meaning::position),
+                      field("tets", &PatchComplex::tets),
+                      // A gradient has no unit, so a value of the function is a length.
+                      field("weights", &PatchComplex::weights).means(Meaning::length),
+                      field("kinds", &PatchComplex::kinds), field("sides", &PatchComplex::sides),
+                      field("triangles", &PatchComplex::triangles), field("edges", &PatchComplex::edges),
+                      field("combine", &PatchComplex::combine), field("partners", &PatchComplex::partners)};
+}
 
 }  // namespace scanmill

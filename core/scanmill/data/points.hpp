@@ -20,6 +20,11 @@ struct PointCloud {
 
     std::size_t size() const { return positions.size(); }
 };
+constexpr auto fields(const PointCloud*) {
+    return std::tuple{field("frame", &PointCloud::frame),
+                      field("positions", &PointCloud::positions).means(Meaning::position),
+                      field("columns", &PointCloud::columns)};
+}
 
 /// The points at `rows` with all their columns, in the order of `rows`.
 PointCloud gather(const PointCloud& cloud, std::span<const u32> rows);

@@ -8,6 +8,7 @@
 /// of e) and n2 (right of e), and u = cos phi n0 - sin phi (e x n0), so a positive phi leans towards n1.
 
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "scanmill/data/array.hpp"
@@ -23,6 +24,9 @@ enum class ProbeReason : u8 {
     too_tilted,  ///< every such direction is farther from the machine's axis than allowed
     obstructed  ///< ball or stylus would meet the part elsewhere, or the start cannot be left along the axis
 };
+constexpr std::array<std::string_view, 5> names_of(const ProbeReason*) {
+    return {"none", "concave", "too-narrow", "too-tilted", "obstructed"};
+}
 
 /// What the ball meets first if it moves against the mesh.
 enum class ProbeContact : u8 {
@@ -31,12 +35,9 @@ enum class ProbeContact : u8 {
     elsewhere,  ///< the part too far from T, or the stylus meets the part
     missed  ///< nothing
 };
-
-/// Radians. NaN where no direction is admissible, or none was sought.
-struct AngleRange {
-    double min = std::numeric_limits<double>::quiet_NaN();
-    double max = std::numeric_limits<double>::quiet_NaN();
-};
+constexpr std::array<std::string_view, 4> names_of(const ProbeContact*) {
+    return {"none", "edge", "elsewhere", "missed"};
+}
 
 struct ProbeTouch {
     static constexpr u32 no_order = ~u32(0);
@@ -52,10 +53,11 @@ struct ProbeTouch {
     double interior_angle = nan;
     /// Whether n2 is not known, but assumed to be perpendicular to n1.
     bool assumed = false;
-    /// The directions that meet the edge first, for T anywhere within the scanner's error of the edge.
-    AngleRange range;
+    /// The directions that meet the edge first, for T anywhere within the scanner's error of the edge, in radians. NaN
+    /// where no direction is admissible, or none was sought.
+    double phi_min = nan, phi_max = nan;
     /// The same for T on the left face, sought where `assumed`.
-    AngleRange known_range;
+    double phi_known_min = nan, phi_known_max = nan;
     /// The direction that is used, in radians; NaN if there is none.
     double phi = nan;
     /// u: unit vector from the part to the probe. Zero if the touch is not made; `start` and `centre` are T then.
@@ -72,16 +74,57 @@ struct ProbeTouch {
     double contact_distance = nan;
     /// Position in the order of touches, from 0; no_order if the touch is not made.
     u32 order = no_order;
+
+    bool is_made() const { return reason == ProbeReason::none; }
 };
+constexpr auto fields(const ProbeTouch*) {
+    using T = ProbeTouch;
+    constexpr auto is_made = [](const T& touch) { return touch.is_made(); };
+    return std::tuple{
+        field("touch", &T::touch, "The number of the reference point."),
+        field("feature", &T::feature, "The line that it measures."),
+        field("point", &T::position, "The reference point, in world coordinates.").means(Meaning::position),
+        field("tangent", &T::tangent).means(Meaning::direction),
+        field("left-normal", &T::left_normal).means(Meaning::direction),
+        field("right-normal", &T::right_normal).means(Meaning::direction),
+        field("interior-angle", &T::interior_angle, "Between the faces; null: not defined.").unit("rad").nullable(),
+        field("assumed", &T::assumed, "Whether the right normal is an assumption."),
+        field("phi-min", &T::phi_min, "Of the admissible directions; null: there is none.").unit("rad").nullable(),
+        field("phi-max", &T::phi_max).unit("rad").nullable(),
+        field("phi-known-min", &T::phi_known_min, "For reference points on the left face.").unit("rad").nullable(),
+        field("phi-known-max", &T::phi_known_max).unit("rad").nullable(),
+        field("phi", &T::phi, "The direction that is used.").unit("rad").nullable(),
+        field("approach", &T::approach, "From the part to the probe; null: the touch is not made.")
+            .means(Meaning::direction)
+            .only_if(is_made),
+        field("start", &T::start, "The ball's centre where the approach begins.")
+            .means(Meaning::position)
+            .only_if(is_made),
+        field("centre", &T::centre, "Of the ball at the contact, as predicted.")
+            .means(Meaning::position)
+            .only_if(is_made),
+        field("reason", &T::reason, "Why the touch is not made."),
+        field("false-share", &T::false_share, "Of the admissible reference points.").nullable(),
+        field("contact", &T::contact, "What the ball meets first."),
+        field("contact-distance", &T::contact_distance, "From the reference point.").means(Meaning::length).nullable(),
+        field("order", &T::order, "Position in the order of touches, from 0.").nullable()};
+}
 
 enum class ProbeMoveType : u8 { clearance, approach, retract };
+constexpr std::array<std::string_view, 3> names_of(const ProbeMoveType*) {
+    return {"clearance", "approach", "retract"};
+}
 
 /// A move of the ball's centre along a polyline.
 struct ProbeMove {
     ProbeMoveType type;
     u32 touch;  ///< row of the touch that the move leads to or, when it retracts, comes from
-    u32 begin, end;  ///< the polyline is path[begin] … path[end - 1] of the plan
+    Array<Vec3> points;  ///< positions of the ball's centre, relative to frame.origin
 };
+constexpr auto fields(const ProbeMove*) {
+    return std::tuple{field("type", &ProbeMove::type), field("touch", &ProbeMove::touch, "A row of the touches."),
+                      field("points", &ProbeMove::points, "World coordinates.").means(Meaning::position)};
+}
 
 struct ProbePlan {
     Frame frame;
@@ -90,8 +133,6 @@ struct ProbePlan {
     /// In the order in which the machine makes them: for each touch a clearance move to its start, the approach and the
     /// retraction.
     std::vector<ProbeMove> moves;
-    /// Positions of the ball's centre, relative to frame.origin.
-    Buffer<Vec3> path;
 
     double radius = 0;  ///< r, of the ball
     double scanner_error = 0;  ///< delta: the largest distance of a reference point from the true edge
@@ -101,5 +142,19 @@ struct ProbePlan {
     /// a: the unit vector from the ball's centre along the stylus.
     Vec3 machine_axis = Vec3::UnitZ();
 };
+constexpr auto fields(const ProbePlan*) {
+    using T = ProbePlan;
+    return std::tuple{
+        field("frame", &T::frame).flat(),
+        field("radius", &T::radius, "Of the ball.").means(Meaning::length),
+        field("scanner-error", &T::scanner_error, "The largest distance of a point from the true edge.")
+            .means(Meaning::length),
+        field("clearance", &T::clearance, "Kept from the part.").means(Meaning::length),
+        field("stylus-radius", &T::stylus_radius).means(Meaning::length),
+        field("stylus-length", &T::stylus_length).means(Meaning::length),
+        field("machine-axis", &T::machine_axis, "From the ball's centre along the stylus.").means(Meaning::direction),
+        field("touches", &T::touches),
+        field("moves", &T::moves)};
+}
 
 }  // namespace scanmill

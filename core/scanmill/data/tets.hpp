@@ -34,6 +34,15 @@ struct TetMesh {
     /// #cells, 1 inside and 0 outside the solid; empty without labels.
     Buffer<u8> inside;
 };
+constexpr auto fields(const TetMesh*) {
+    return std::tuple{field("frame", &TetMesh::frame),
+                      field("positions", &TetMesh::positions).means(Meaning::position),
+                      field("vertex-columns", &TetMesh::vertex_columns),
+                      field("weights", &TetMesh::weights).means(Meaning::length, 2),
+                      field("cells", &TetMesh::cells),
+                      field("neighbours", &TetMesh::neighbours),
+                      field("inside", &TetMesh::inside)};
+}
 
 /// The corners of a positively oriented cell's facet opposite to corner i, ordered so that the facet's normal (right
 /// hand rule) points away from corner i, out of the cell.

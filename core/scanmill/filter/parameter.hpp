@@ -40,11 +40,15 @@ struct Bound {
     bool inclusive;
     bool operator==(const Bound&) const = default;
 };
+constexpr auto fields(const Bound*) {
+    return std::tuple{field("value", &Bound::value), field("inclusive", &Bound::inclusive)};
+}
 
 struct Choice {
     std::string name, help;
     bool operator==(const Choice&) const = default;
 };
+constexpr auto fields(const Choice*) { return std::tuple{field("name", &Choice::name), field("help", &Choice::help)}; }
 
 struct ParameterSpec {
     std::string name;
@@ -63,6 +67,24 @@ struct ParameterSpec {
 
     bool operator==(const ParameterSpec&) const = default;
 };
+/// Without the default value, whose form depends on the others.
+constexpr auto fields(const ParameterSpec*) {
+    using T = ParameterSpec;
+    return std::tuple{
+        field("name", &T::name),
+        field("type", &T::type),
+        field("help", &T::help),
+        field("list", &T::list).optional(),
+        field("size", &T::size, "The exact length of the list.").optional(),
+        field("required", &T::required, "It has no default.").optional(),
+        field("word", &T::word, "Accepted in place of a value.").optional(),
+        field("low", &T::low).optional(),
+        field("high", &T::high).optional(),
+        field("choices", &T::choices).optional(),
+        field("unless-given", &T::unless_given, "The default is not used if this parameter is given.").optional(),
+        field("takes-spacings", &T::takes_spacings, "Lengths in `spacing` reach the filter as they are written.")
+            .optional()};
+}
 
 /// A value as the user wrote it: texts that are not interpreted yet.
 struct WrittenParameter {

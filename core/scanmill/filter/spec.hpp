@@ -29,6 +29,18 @@ struct PortSpec {
     bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;
 };
+constexpr auto fields(const PortSpec*) {
+    using T = PortSpec;
+    return std::tuple{field("name", &T::name),
+                      field("kind", &T::kind),
+                      field("help", &T::help),
+                      field("list", &T::list, "It takes any number of values.").optional(),
+                      field("optional", &T::optional).optional(),
+                      field("also", &T::also, "Other kinds that it takes.").optional(),
+                      field("like", &T::like, "The input whose kind it has.").optional(),
+                      field("maker", &T::maker, "The filter that usually makes its value.").optional(),
+                      field("by-name", &T::by_name, "No later step takes it unless it names it.").optional()};
+}
 
 /// "mesh or points".
 std::string kinds_text(const PortSpec& port);
@@ -43,6 +55,15 @@ struct MetricSpec {
 
     bool operator==(const MetricSpec&) const = default;
 };
+constexpr auto fields(const MetricSpec*) {
+    using T = MetricSpec;
+    return std::tuple{field("name", &T::name),
+                      field("unit", &T::unit),
+                      field("help", &T::help),
+                      field("headline", &T::headline).optional(),
+                      field("numbered", &T::numbered, "Reported once per item: NAME, NAME@2, …").optional(),
+                      field("better", &T::better).optional()};
+}
 
 /// Of a filter that can read its first input as a stream, if no other input is wired: a scan file that is read piece by
 /// piece and never in memory as a whole.
@@ -52,6 +73,7 @@ struct StreamSpec {
 
     bool operator==(const StreamSpec&) const = default;
 };
+constexpr auto fields(const StreamSpec*) { return std::tuple{field("given", &StreamSpec::given)}; }
 
 /// Of a filter that measures a value by its truth: the names of these two inputs.
 struct MeasureSpec {
@@ -59,6 +81,9 @@ struct MeasureSpec {
 
     bool operator==(const MeasureSpec&) const = default;
 };
+constexpr auto fields(const MeasureSpec*) {
+    return std::tuple{field("value", &MeasureSpec::value), field("truth", &MeasureSpec::truth)};
+}
 
 struct FilterSpec {
     std::string name;
@@ -83,6 +108,23 @@ struct FilterSpec {
     const MetricSpec* metric(std::string_view metric) const;
     bool operator==(const FilterSpec&) const = default;
 };
+constexpr auto fields(const FilterSpec*) {
+    using T = FilterSpec;
+    return std::tuple{
+        field("name", &T::name),
+        field("version", &T::version),
+        field("summary", &T::summary),
+        field("source", &T::source),
+        field("ties", &T::ties),
+        field("not-finite", &T::not_finite),
+        field("inputs", &T::inputs),
+        field("outputs", &T::outputs),
+        field("parameters", &T::parameters),
+        field("metrics", &T::metrics),
+        field("streams", &T::streams, "It can read its first input as a stream.").optional(),
+        field("measures", &T::measures, "It measures the value at one input by the truth at another.").optional(),
+        field("adds", &T::adds, "Columns that it may add.").optional()};
+}
 
 /// Throws Error for an unsound declaration: names that repeat or are not lower-case-with-hyphens, help that is not a
 /// sentence or only repeats the name, a default outside its range, no output; a missing remark on ties (filters with

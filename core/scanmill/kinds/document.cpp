@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -71,6 +72,20 @@ Json JsonByName<Metrics>::write(const Metrics& metrics) {
     return json;
 }
 
+void JsonByName<Metrics>::read(const Json& json, Metrics& metrics) {
+    require_object(json);
+    metrics.values.clear();
+    for (const auto& [name, value] : json.items()) {
+        if (!value.is_number() && !value.is_boolean() && !value.is_null())
+            throw JsonMismatch{name, "is not a number, true, false or null"};
+        metrics.set(name,
+                    value.is_null()      ? std::numeric_limits<double>::quiet_NaN()
+                    : value.is_boolean() ? static_cast<double>(value.get<bool>())
+                                         : value.get<double>(),
+                    Unit::number);
+    }
+}
+
 Json JsonByName<Metrics>::schema() {
     return schema::described("Numbers by name; null: not finite.", "",
                              schema::map_of({{"type", {"number", "boolean", "null"}}}));
@@ -87,56 +102,47 @@ Json parse_document(std::string_view text) {
     }
 }
 
-void require_keys(const Json& object, const std::string& place, const std::vector<std::string>& known) {
-    for (const auto& [key, value] : object.items())
-        if (std::ranges::find(known, key) == known.end())
-            throw Error("{}: unknown key '{}'; expected {}{}", place, key, enumerated(known), did_you_mean(key, known));
-}
-
-void require_document(const Json& document, const std::vector<std::string>& known) {
-    if (!document.is_object() || member(document, "scanmill") != Json(1))
+void require_document(const Json& document) {
+    if (!document.is_object() || document.value("scanmill", Json()) != Json(1))
         throw Error("is not a Scanmill document; expected an object with \"scanmill\": 1");
-    require_keys(document, "the document", known);
 }
 
-const Json& member(const Json& object, std::string_view key) {
-    static const Json none;
-    const auto found = object.find(key);
-    return found == object.end() ? none : *found;
+namespace {
+
+class MoveOrigin : public FieldVisitor {
+public:
+    explicit MoveOrigin(const Vec3& origin) : origin_(origin) {}
+    void frame(const char*, Frame& frame) override {
+        shift_ = frame.origin - origin_;
+        frame.origin = origin_;
+    }
+    void positions(const char*, Buffer<Vec3>& positions) override { positions = translated(positions, shift_); }
+
+private:
+    Vec3 origin_, shift_ = Vec3::Zero();
+};
+
+struct FindBox : FieldVisitor {
+    void positions(const char*, Buffer<Vec3>& positions) override {
+        for (const Vec3& p : positions) box.add(p);
+    }
+    BoundingBox box;
+};
+
+}  // namespace
+
+void use_world_origin(Kind kind, void* object) {
+    MoveOrigin move(Vec3::Zero());
+    kind.info().visit(move, object);
 }
 
-std::string text_member(const Json& object, std::string_view key, const std::string& place) {
-    const Json& text = member(object, key);
-    if (text.is_null()) return {};
-    if (!text.is_string()) throw Error("{}: '{}' is not a text", place, key);
-    return text.get<std::string>();
+void use_near_origin(Kind kind, void* object) {
+    FindBox found;
+    kind.info().visit(found, object);
+    const Vec3 origin = distant_origin(found.box);
+    if (origin == Vec3::Zero()) return;  // adding 0 would change -0
+    MoveOrigin move(origin);
+    kind.info().visit(move, object);
 }
-
-LengthUnit unit_member(const Json& document) {
-    const std::string text = text_member(document, "unit", "the document");
-    if (text.empty()) return LengthUnit::unknown;
-    const std::optional<LengthUnit> unit = length_unit(text);
-    if (!unit) throw Error("unknown unit '{}'; expected one of {}", text, length_unit_symbols());
-    return *unit;
-}
-
-const Json& list_member(const Json& object, std::string_view key, const std::string& place) {
-    const Json& list = member(object, key);
-    if (!list.is_array()) throw Error("{}: '{}' is not a list", place, key);
-    return list;
-}
-
-std::vector<double> numbers_of(const Json& list, std::size_t count, const std::string& what) {
-    const bool sound = list.is_array() && list.size() == count &&
-                       std::ranges::all_of(list, [](const Json& item) { return item.is_number(); });
-    if (!sound) throw Error("{} is not a list of {} numbers", what, count);
-    return list.get<std::vector<double>>();
-}
-
-Vec3 vector_of(const Json& list, const std::string& what) { return Vec3(numbers_of(list, 3, what).data()); }
-
-Json unit_json(LengthUnit unit) { return unit == LengthUnit::unknown ? Json(nullptr) : Json(symbol(unit)); }
-
-Json json_of(const Vec3& vector) { return Json::array({vector.x(), vector.y(), vector.z()}); }
 
 }  // namespace scanmill

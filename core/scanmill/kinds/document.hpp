@@ -11,7 +11,7 @@
 
 #include "scanmill/data/metrics.hpp"
 #include "scanmill/data/quantity.hpp"
-#include "scanmill/kinds/kind.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 #include "scanmill/record/json.hpp"
 
 namespace scanmill {
@@ -56,35 +56,62 @@ struct JsonForm<Ratio> : QuantityForm<Ratio> {};
 template <>
 struct JsonByName<Metrics> {
     static Json write(const Metrics& metrics);
+    /// The unit of all is number.
+    static void read(const Json& json, Metrics& metrics);
     static Json schema();
 };
+/// Names and values.
+inline Json metrics_json(const Metrics& metrics) { return JsonByName<Metrics>::write(metrics); }
 
 /// Throws Error for text that is not JSON (with the line), a key that is twice in one object, and nesting deeper than
 /// 16 levels.
 Json parse_document(std::string_view text);
 
-/// Throws Error unless the document is an object with "scanmill": 1 and no keys but `known`.
-void require_document(const Json& document, const std::vector<std::string>& known);
-/// Throws Error unless the object has no keys but `known`. `place` begins the message.
-void require_keys(const Json& object, const std::string& place, const std::vector<std::string>& known);
+/// A whole document: "scanmill": 1 and the members of a described struct.
+template <Described Document>
+Json document_of(const Document& content) {
+    Json json{{"scanmill", 1}};
+    JsonForm<Document>::write_members(json, content);
+    return json;
+}
 
-/// The member, or null if there is none.
-const Json& member(const Json& object, std::string_view key);
-/// The member as text; empty if there is none or it is null. Throws Error for another type.
-std::string text_member(const Json& object, std::string_view key, const std::string& place);
-/// The member `unit`; unknown if it is null or absent. Throws Error for any other text than a unit's symbol.
-LengthUnit unit_member(const Json& document);
-/// The member as a list. Throws Error for another type.
-const Json& list_member(const Json& object, std::string_view key, const std::string& place);
+/// Throws Error unless the document is an object with "scanmill": 1.
+void require_document(const Json& document);
 
-/// Throws Error unless `list` is a list of `count` numbers. `what` begins the message: "pose 2: 'rotation'".
-std::vector<double> numbers_of(const Json& list, std::size_t count, const std::string& what);
-Vec3 vector_of(const Json& list, const std::string& what);
+/// Throws Error as require_document() and read_json().
+template <Described Document>
+Document from_document(const Json& json) {
+    require_document(json);
+    Document content{};
+    try {
+        require_known(json, JsonForm<Document>::names({"scanmill"}));
+        JsonForm<Document>::read_members(json, content);
+    } catch (const JsonMismatch& mismatch) {
+        throw_mismatch(mismatch, "the document");
+    }
+    return content;
+}
 
-/// The symbol; null if the unit is unknown.
-Json unit_json(LengthUnit unit);
-Json json_of(const Vec3& vector);
-/// Names and values; a value that is not finite is null.
-inline Json metrics_json(const Metrics& metrics) { return JsonByName<Metrics>::write(metrics); }
+/// Moves the frame's origin of an object to 0, and to a point from which all positions are exact. The positions keep
+/// their world coordinates.
+void use_world_origin(Kind kind, void* object);
+void use_near_origin(Kind kind, void* object);
+
+/// Members of the traits of types with a JSON form. `Document` is a described struct; KindTraits<T>::document() makes
+/// it from an object in world coordinates, and KindTraits<T>::object() the object from it.
+template <class T, Described Document>
+struct HasDocument {
+    static void to_json(const T& object, Json& json) {
+        T world = object;
+        use_world_origin(kind_of<T>(), &world);
+        json = document_of<Document>(KindTraits<T>::document(world));
+    }
+    static T from_json(const Json& json, const OnWarning&) {
+        T object = KindTraits<T>::object(from_document<Document>(json));
+        use_near_origin(kind_of<T>(), &object);
+        return object;
+    }
+    static Json schema() { return schema::document(KindTraits<T>::name, JsonForm<Document>::schema()); }
+};
 
 }  // namespace scanmill

@@ -12,64 +12,66 @@
 /// are in no polyline and not a corner are not written.
 #include "scanmill/data/features.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
-/// For the cache: a row of type, closed, begin, end.
-static void to_json(nlohmann::json& json, const FeaturePolyline& line) {
-    json = {static_cast<int>(line.type), line.closed, line.begin, line.end};
-}
-static void from_json(const nlohmann::json& json, FeaturePolyline& line) {
-    line = {static_cast<FeatureType>(json.at(0).get<int>()), json.at(1).get<bool>(), json.at(2).get<u32>(),
-            json.at(3).get<u32>()};
-}
-
 namespace {
 
-constexpr std::array<std::string_view, 3> type_names{"outer boundary", "hole", "crease"};  // by FeatureType
+using Normals = std::vector<std::optional<Vec3>>;
 
-Vec3 world(const FeatureGraph& graph, u32 vertex) { return graph.frame.origin + graph.positions[vertex]; }
-
-Json polyline_json(const FeatureGraph& graph, const FeaturePolyline& line) {
-    Json points = Json::array(), left = Json::array(), right = Json::array();
-    for (u32 row = line.begin; row < line.end; ++row) {
-        points.push_back(json_of(world(graph, graph.vertices[row])));
-        if (row + 1 == line.end && !line.closed) break;
-        const auto normal = [](const Vec3& n) { return n == Vec3::Zero() ? Json(nullptr) : json_of(n); };
-        left.push_back(normal(graph.left_normals[row]));
-        right.push_back(normal(graph.right_normals[row]));
-    }
-    return {{"type", type_names[static_cast<std::size_t>(line.type)]},
-            {"closed", line.closed},
-            {"points", std::move(points)},
-            {"left-normals", std::move(left)},
-            {"right-normals", std::move(right)}};
+struct PolylineDocument {
+    FeatureType type{};
+    bool closed = false;
+    std::vector<Vec3> points;
+    Normals left_normals, right_normals;
+};
+constexpr auto fields(const PolylineDocument*) {
+    using T = PolylineDocument;
+    return std::tuple{field("type", &T::type),
+                      field("closed", &T::closed, "Its last segment returns to its first point."),
+                      field("points", &T::points, "World coordinates."),
+                      field("left-normals", &T::left_normals, "Of the surface left of each segment; null: none."),
+                      field("right-normals", &T::right_normals, "Of the surface right of each segment; null: none.")};
 }
 
-/// Reads a document into a graph. Equal points become one vertex; vertices are numbered in order of their first use.
-class GraphReader {
+struct FeaturesDocument {
+    Frame frame;
+    std::vector<PolylineDocument> polylines;
+    std::vector<Vec3> corners;
+};
+constexpr auto fields(const FeaturesDocument*) {
+    using T = FeaturesDocument;
+    return std::tuple{field("frame", &T::frame).flat(), field("polylines", &T::polylines),
+                      field("corners", &T::corners, "World coordinates.")};
+}
+
+PolylineDocument document_of(const FeatureGraph& graph, const FeaturePolyline& line) {
+    PolylineDocument document{line.type, line.closed, {}, {}, {}};
+    const auto normal = [](const Vec3& n) { return n == Vec3::Zero() ? std::nullopt : std::optional(n); };
+    for (u32 row = line.begin; row < line.end; ++row) {
+        document.points.push_back(graph.positions[graph.vertices[row]]);
+        if (row + 1 == line.end && !line.closed) break;
+        document.left_normals.push_back(normal(graph.left_normals[row]));
+        document.right_normals.push_back(normal(graph.right_normals[row]));
+    }
+    return document;
+}
+
+/// Makes a graph of a document. Equal points become one vertex; vertices are numbered in order of their first use.
+class GraphMaker {
 public:
-    FeatureGraph read(const Json& document) {
-        require_document(document, {"scanmill", "unit", "frame", "polylines", "corners"});
-        graph_.frame.unit = unit_member(document);
-        graph_.frame.name = text_member(document, "frame", "the document");
-        for (const Json& json : list_member(document, "polylines", "the document"))
-            read_polyline(json, fmt::format("polyline {}", graph_.polylines.size() + 1));
+    FeatureGraph graph_of(const FeaturesDocument& document) {
+        graph_.frame = document.frame;
+        for (const PolylineDocument& line : document.polylines) add(line, graph_.polylines.size());
         Array<u32> corners;
-        for (const Json& corner : list_member(document, "corners", "the document"))
-            corners.push_back(vertex_at(vector_of(corner, "a corner")));
+        for (const Vec3& corner : document.corners) corners.push_back(vertex_at(corner));
         std::ranges::sort(corners);
-        graph_.frame.origin = distant_origin(bounding_box(positions_));
-        for (Vec3& p : positions_) p -= graph_.frame.origin;
         graph_.positions = std::move(positions_);
         graph_.vertices = std::move(vertices_);
         graph_.left_normals = std::move(left_);
@@ -86,34 +88,23 @@ private:
         return found->second;
     }
 
-    void read_polyline(const Json& json, const std::string& place) {
-        if (!json.is_object()) throw Error("{} is not an object", place);
-        require_keys(json, place, {"type", "closed", "points", "left-normals", "right-normals"});
-        const std::string type = text_member(json, "type", place);
-        const auto found = std::ranges::find(type_names, type);
-        if (found == type_names.end())
-            throw Error("{}: unknown type '{}'; expected outer boundary, hole or crease", place, type);
-        if (!member(json, "closed").is_boolean()) throw Error("{}: 'closed' is not true or false", place);
-        FeaturePolyline line{static_cast<FeatureType>(found - type_names.begin()), member(json, "closed").get<bool>(),
-                             static_cast<u32>(vertices_.size()), 0};
-        const Json& points = list_member(json, "points", place);
-        const std::size_t least = line.closed ? 3 : 2;
-        if (points.size() < least)
-            throw Error("{} has {} points; a {} polyline needs at least {}", place, points.size(),
-                        line.closed ? "closed" : "open", least);
-        const std::size_t segments = points.size() - (line.closed ? 0 : 1);
-        for (const Json& point : points) vertices_.push_back(vertex_at(vector_of(point, place + ": a point")));
-        for (const auto& [key, normals] : {std::pair("left-normals", &left_), std::pair("right-normals", &right_)}) {
-            const Json& list = list_member(json, key, place);
-            if (list.size() != segments)
-                throw Error("{} has {} '{}'; expected one for each of its {} segments", place, list.size(), key,
-                            segments);
-            for (const Json& normal : list)
-                normals->push_back(normal.is_null() ? Vec3::Zero() : vector_of(normal, place + ": a normal"));
+    void add(const PolylineDocument& line, std::size_t index) {
+        const std::size_t points = line.points.size(), least = line.closed ? 3 : 2;
+        if (points < least)
+            throw Error("the document: 'polylines[{}].points' has {}; {} polyline needs at least {}", index, points,
+                        line.closed ? "a closed" : "an open", least);
+        const auto begin = static_cast<u32>(vertices_.size());
+        for (const Vec3& point : line.points) vertices_.push_back(vertex_at(point));
+        const std::size_t segments = points - (line.closed ? 0 : 1);
+        for (const auto& [key, given, normals] :
+             {std::tuple("left", &line.left_normals, &left_), std::tuple("right", &line.right_normals, &right_)}) {
+            if (given->size() != segments)
+                throw Error("the document: 'polylines[{}].{}-normals' has {}; expected one for each of {} segments",
+                            index, key, given->size(), segments);
+            for (const std::optional<Vec3>& normal : *given) normals->push_back(normal.value_or(Vec3::Zero()));
             if (!line.closed) normals->push_back(Vec3::Zero());
         }
-        line.end = static_cast<u32>(vertices_.size());
-        graph_.polylines.push_back(line);
+        graph_.polylines.push_back({line.type, line.closed, begin, static_cast<u32>(vertices_.size())});
     }
 
     FeatureGraph graph_;
@@ -125,28 +116,17 @@ private:
 }  // namespace
 
 template <>
-struct KindTraits<FeatureGraph> : FromPositions<FeatureGraph>, NoProperties<FeatureGraph> {
+struct KindTraits<FeatureGraph>
+    : FromPositions<FeatureGraph>, NoProperties<FeatureGraph>, HasDocument<FeatureGraph, FeaturesDocument> {
     static constexpr std::string_view name = "features";
-    static void visit(FieldVisitor& visitor, FeatureGraph& graph) {
-        visitor.frame("frame", graph.frame);
-        visitor.positions("positions", graph.positions);
-        visitor.small("polylines", graph.polylines);
-        visitor.plain("vertices", graph.vertices);
-        visitor.directions("left-normals", graph.left_normals);
-        visitor.directions("right-normals", graph.right_normals);
-        visitor.plain("corners", graph.corners);
-    }
     static constexpr std::string_view json_member = "polylines";
-    static void to_json(const FeatureGraph& graph, Json& document) {
-        document = {{"scanmill", 1},
-                    {"unit", unit_json(graph.frame.unit)},
-                    {"frame", graph.frame.name.empty() ? Json(nullptr) : Json(graph.frame.name)},
-                    {"polylines", Json::array()},
-                    {"corners", Json::array()}};
-        for (const FeaturePolyline& line : graph.polylines) document["polylines"].push_back(polyline_json(graph, line));
-        for (const u32 corner : graph.corners) document["corners"].push_back(json_of(world(graph, corner)));
+    static FeaturesDocument document(const FeatureGraph& graph) {
+        FeaturesDocument document{graph.frame, {}, {}};
+        for (const FeaturePolyline& line : graph.polylines) document.polylines.push_back(document_of(graph, line));
+        for (const u32 corner : graph.corners) document.corners.push_back(graph.positions[corner]);
+        return document;
     }
-    static FeatureGraph from_json(const Json& document, const OnWarning&) { return GraphReader().read(document); }
+    static FeatureGraph object(const FeaturesDocument& document) { return GraphMaker().graph_of(document); }
 };
 
 template Kind kind_of<FeatureGraph>();

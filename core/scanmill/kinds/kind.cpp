@@ -15,11 +15,6 @@ template <>
 struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
     static constexpr std::string_view name = "points";
     static RobustBox box(const PointCloud& cloud) { return robust_box(cloud.positions.span()); }
-    static void visit(FieldVisitor& visitor, PointCloud& cloud) {
-        visitor.frame("frame", cloud.frame);
-        visitor.positions("positions", cloud.positions);
-        visitor.columns("columns", cloud.columns);
-    }
     static std::vector<PropertySpec> property_specs() { return {{"points", Unit::count, "Points."}}; }
     static std::vector<std::optional<double>> property_values(const PointCloud& cloud) { return {cloud.size()}; }
     static void require_usable(const PointCloud& cloud) {
@@ -30,16 +25,6 @@ struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
 template <>
 struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMesh> {
     static constexpr std::string_view name = "mesh";
-    static void visit(FieldVisitor& visitor, TriangleMesh& mesh) {
-        visitor.frame("frame", mesh.frame);
-        visitor.positions("positions", mesh.positions);
-        visitor.plain("triangles", mesh.triangles);
-        visitor.columns("vertex-columns", mesh.vertex_columns);
-        visitor.columns("face-columns", mesh.face_columns);
-        visitor.plain("edges", mesh.edges);
-        visitor.columns("edge-columns", mesh.edge_columns);
-        visitor.plain("sharp-edges", mesh.sharp_edges);
-    }
     static RobustBox box(const TriangleMesh& mesh) {
         return mesh.triangles.empty() ? bounding_box(mesh.positions.span()) : surface_box(mesh);
     }
@@ -69,15 +54,6 @@ struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMe
 template <>
 struct KindTraits<TetMesh> : FromPositions<TetMesh>, NoJson<TetMesh> {
     static constexpr std::string_view name = "tets";
-    static void visit(FieldVisitor& visitor, TetMesh& tets) {
-        visitor.frame("frame", tets.frame);
-        visitor.positions("positions", tets.positions);
-        visitor.columns("vertex-columns", tets.vertex_columns);
-        visitor.lengths("weights", tets.weights, 2);
-        visitor.plain("cells", tets.cells);
-        visitor.plain("neighbours", tets.neighbours);
-        visitor.plain("inside", tets.inside);
-    }
     static std::vector<PropertySpec> property_specs() {
         return {{"points", Unit::count, "Vertices."}, {"cells", Unit::count, "Tetrahedra."}};
     }

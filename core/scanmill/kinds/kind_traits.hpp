@@ -2,16 +2,20 @@
 #pragma once
 /// Everything the framework needs of a kind, in one class; and the visitor of an object's fields.
 
-#include <nlohmann/json.hpp>
+#include <concepts>
+#include <nlohmann/json_fwd.hpp>
 
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 
-/// Visits every field of an object of any kind, to read or to change it. KindTraits<T>::visit() calls one function per
-/// field and so states what the field means: a visitor that moves an object changes positions and directions, one that
-/// converts units changes lengths, one that stores the object takes everything. By default nothing changes.
+template <class T>
+struct JsonForm;
+
+/// Visits every field of an object of any kind, to read or to change it. One function is called per field, as its
+/// description states what it means: a visitor that moves an object changes positions and directions, one that converts
+/// units changes lengths, one that stores the object takes everything. By default nothing changes.
 class FieldVisitor {
 public:
     virtual ~FieldVisitor() = default;
@@ -35,22 +39,105 @@ public:
     /// A small field with a JSON form, which neither a motion nor a unit changes.
     template <class T>
     void small(const char* name, T& field) {
-        nlohmann::json json = field;
-        if (json_of(name, json)) field = json.get<T>();
+        auto json = JsonForm<T>::write(field);
+        if (json_of(name, json)) JsonForm<T>::read(json, field);
     }
 
 private:
     virtual void bytes_of(const char* /*name*/, Buffer<std::byte>&, std::size_t /*element*/) {}
     /// True if it replaced the JSON.
-    virtual bool json_of(const char* /*name*/, nlohmann::json&) { return false; }
+    virtual bool json_of(const char* /*name*/, nlohmann::ordered_json&) { return false; }
 };
 
-/// Specialised for every kind. A missing member does not compile; the bases below provide members for common cases.
+/// Visits an array as its field's description states.
+template <class T>
+void visit_array(FieldVisitor& visitor, const char* name, const auto& field, Buffer<T>& elements) {
+    if constexpr (std::same_as<T, Vec3>) {
+        if (field.meaning == Meaning::position) return visitor.positions(name, elements);
+        if (field.meaning == Meaning::direction) return visitor.directions(name, elements);
+    }
+    if constexpr (std::same_as<T, double> || std::same_as<T, PatchWeights>)
+        if (field.meaning == Meaning::length) {
+            constexpr std::size_t each = sizeof(T) / sizeof(double);
+            Buffer<double> numbers(elements.owner(), reinterpret_cast<const double*>(elements.data()),
+                                   each * elements.size());
+            visitor.lengths(name, numbers, field.exponent);
+            elements = Buffer<T>(numbers.owner(), reinterpret_cast<const T*>(numbers.data()), numbers.size() / each);
+            return;
+        }
+    visitor.plain(name, elements);
+}
+
+/// Visits a list of structs field by field: the members of all rows are one array, lists of positions one after the
+/// other.
+template <Described Row>
+void visit_rows(FieldVisitor& visitor, const std::string& prefix, std::vector<Row>& rows) {
+    for_each_field<Row>([&](const auto& field) {
+        using Member = typename std::remove_cvref_t<decltype(field)>::Member;
+        using Element = std::conditional_t<std::same_as<Member, bool>, u8, Member>;
+        const std::string name = prefix + "." + field.name;
+        if constexpr (std::same_as<Member, std::string>) {
+            std::vector<std::string> texts;
+            for (const Row& row : rows) texts.push_back(row.*field.member);
+            visitor.small(name.c_str(), texts);
+            rows.resize(texts.size());
+            for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*field.member = texts[i];
+        } else if constexpr (std::same_as<Member, Array<Vec3>>) {
+            Array<u32> sizes;
+            Array<Vec3> all;
+            for (const Row& row : rows) {
+                sizes.push_back(static_cast<u32>((row.*field.member).size()));
+                all.insert(all.end(), (row.*field.member).begin(), (row.*field.member).end());
+            }
+            Buffer<u32> visited_sizes(std::move(sizes));
+            Buffer<Vec3> visited_all(std::move(all));
+            visitor.plain((name + ".sizes").c_str(), visited_sizes);
+            visit_array(visitor, name.c_str(), field, visited_all);
+            rows.resize(visited_sizes.size());
+            const Vec3* next = visited_all.begin();
+            for (std::size_t i = 0; i < rows.size(); next += visited_sizes[i++])
+                (rows[i].*field.member).assign(next, next + visited_sizes[i]);
+        } else {
+            Array<Element> elements;
+            for (const Row& row : rows) elements.push_back(row.*field.member);
+            Buffer<Element> visited_elements(std::move(elements));
+            visit_array(visitor, name.c_str(), field, visited_elements);
+            rows.resize(visited_elements.size());
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                rows[i].*field.member = static_cast<Member>(visited_elements[i]);
+        }
+    });
+}
+
+template <Described T>
+void visit_fields(FieldVisitor& visitor, T& object) {
+    for_each_field<T>([&](const auto& field) {
+        auto& member = object.*field.member;
+        using Member = std::remove_cvref_t<decltype(member)>;
+        if constexpr (std::same_as<Member, Frame>) {
+            visitor.frame(field.name, member);
+        } else if constexpr (std::same_as<Member, ColumnTable>) {
+            visitor.columns(field.name, member);
+        } else if constexpr (requires { visit_array(visitor, field.name, field, member); }) {
+            visit_array(visitor, field.name, field, member);
+        } else if constexpr (requires { visit_rows(visitor, field.name, member); }) {
+            visit_rows(visitor, field.name, member);
+        } else if constexpr (std::same_as<Member, double> || std::same_as<Member, Vec3>) {
+            Buffer<Member> one{member};
+            visit_array(visitor, field.name, field, one);
+            if (!one.empty()) member = one[0];
+        } else {
+            visitor.small(field.name, member);
+        }
+    });
+}
+
+/// Specialised for every kind, whose type has fields() that state what they mean. A missing member does not compile;
+/// the bases below, and HasDocument (document.hpp), provide members for common cases.
 ///
 ///     template <>
 ///     struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
 ///         static constexpr std::string_view name = "points";
-///         static void visit(FieldVisitor& visitor, PointCloud& cloud);
 ///         /// Counts and topology that `expect` may test and summaries show.
 ///         static std::vector<PropertySpec> property_specs();
 ///         /// In the order of property_specs(); empty where a property is not defined.
@@ -89,6 +176,7 @@ struct NoJson {
     static constexpr std::string_view json_member = "";
     static void to_json(const T&, nlohmann::ordered_json&) {}
     static T from_json(const nlohmann::ordered_json&, const OnWarning&) { return {}; }
+    static constexpr nlohmann::ordered_json (*schema)() = nullptr;
 };
 
 Metrics metrics_from(const std::vector<PropertySpec>& specs, const std::vector<std::optional<double>>& values);
@@ -99,7 +187,7 @@ inline constexpr KindInfo kind_info{
     KindTraits<T>::is_geometric,
     []() -> std::shared_ptr<void> { return std::make_shared<T>(); },
     [](const void* object) -> std::shared_ptr<void> { return std::make_shared<T>(*static_cast<const T*>(object)); },
-    [](FieldVisitor& visitor, void* object) { KindTraits<T>::visit(visitor, *static_cast<T*>(object)); },
+    [](FieldVisitor& visitor, void* object) { visit_fields(visitor, *static_cast<T*>(object)); },
     [](const void* object) -> RobustBox { return KindTraits<T>::box(*static_cast<const T*>(object)); },
     [](const void* object) { return KindTraits<T>::spacing(*static_cast<const T*>(object)); },
     &KindTraits<T>::property_specs,
@@ -114,7 +202,8 @@ inline constexpr KindInfo kind_info{
     },
     [](const nlohmann::ordered_json& document, const OnWarning& warn) -> std::shared_ptr<void> {
         return std::make_shared<T>(KindTraits<T>::from_json(document, warn));
-    }};
+    },
+    KindTraits<T>::schema};
 
 template <class T>
 Kind kind_of() {
@@ -128,18 +217,3 @@ SCANMILL_ALL_KINDS(SCANMILL_DECLARE_KIND)
 #undef SCANMILL_DECLARE_KIND
 
 }  // namespace scanmill
-
-namespace nlohmann {
-
-/// A vector or matrix as a list of numbers, column by column.
-template <int rows, int columns>
-struct adl_serializer<Eigen::Matrix<double, rows, columns>> {
-    static void to_json(json& value, const Eigen::Matrix<double, rows, columns>& matrix) {
-        value = std::vector<double>(matrix.data(), matrix.data() + matrix.size());
-    }
-    static void from_json(const json& value, Eigen::Matrix<double, rows, columns>& matrix) {
-        for (int i = 0; i < rows * columns; ++i) matrix.data()[i] = value.at(static_cast<std::size_t>(i)).get<double>();
-    }
-};
-
-}  // namespace nlohmann

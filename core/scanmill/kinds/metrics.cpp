@@ -8,59 +8,46 @@
 /// plain fractions; booleans are true and false; a value that is not finite is null and is read as NaN.
 #include "scanmill/data/metrics.hpp"
 
-#include <cmath>
-#include <limits>
-#include <tuple>
+#include <algorithm>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
+namespace {
+
+struct MetricsDocument {
+    LengthUnit unit = LengthUnit::unknown;
+    Metrics metrics;
+    std::vector<std::pair<std::string, Unit>> units;
+};
+constexpr auto fields(const MetricsDocument*) {
+    using T = MetricsDocument;
+    return std::tuple{field("unit", &T::unit).nullable(), field("metrics", &T::metrics).by_name(),
+                      field("units", &T::units, "By metric.")};
+}
+
+}  // namespace
+
 template <>
-struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics> {
+struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics>, HasDocument<Metrics, MetricsDocument> {
     static constexpr std::string_view name = "metrics";
-    static void visit(FieldVisitor& visitor, Metrics& metrics) {
-        std::vector<std::tuple<std::string, double, int>> rows;
-        for (const auto& [name, value, unit] : metrics.values) rows.emplace_back(name, value, static_cast<int>(unit));
-        visitor.small("values", rows);
-        metrics.values.clear();
-        for (const auto& [name, value, unit] : rows) metrics.values.push_back({name, value, static_cast<Unit>(unit)});
-        visitor.small("unit", metrics.unit);
-    }
     static constexpr std::string_view json_member = "metrics";
-    static void to_json(const Metrics& metrics, Json& document) {
-        document = {{"scanmill", 1},
-                    {"unit", unit_json(metrics.unit)},
-                    {"metrics", metrics_json(metrics)},
-                    {"units", Json::object()}};
-        for (const Metric& metric : metrics.values) document["units"][metric.name] = name_of(metric.unit);
+    static MetricsDocument document(const Metrics& metrics) {
+        MetricsDocument document{metrics.unit, metrics, {}};
+        for (const Metric& metric : metrics.values) document.units.emplace_back(metric.name, metric.unit);
+        return document;
     }
-    static Metrics from_json(const Json& document, const OnWarning&) {
-        require_document(document, {"scanmill", "unit", "metrics", "units"});
-        const Json& values = member(document, "metrics");
-        const Json& units = member(document, "units");
-        if (!values.is_object() || !units.is_object())
-            throw Error("'metrics' and 'units' are objects; expected a value and a unit for every metric");
-        require_keys(units, "'units'", [&] {
-            std::vector<std::string> names;
-            for (const auto& [name, value] : values.items()) names.push_back(name);
-            return names;
-        }());
-        Metrics metrics;
-        metrics.unit = unit_member(document);
-        for (const auto& [name, value] : values.items()) {
-            const std::string unit_text = text_member(units, name, "'units'");
-            const std::optional<Unit> unit = value_named<Unit>(unit_text);
-            if (!unit) throw Error("the metric '{}' has the unknown unit '{}'", name, unit_text);
-            if (!value.is_number() && !value.is_boolean() && !value.is_null())
-                throw Error("the metric '{}' is not a number, true, false or null", name);
-            metrics.set(name,
-                        value.is_null()      ? std::numeric_limits<double>::quiet_NaN()
-                        : value.is_boolean() ? (value.get<bool>() ? 1.0 : 0.0)
-                                             : value.get<double>(),
-                        *unit);
+    static Metrics object(MetricsDocument document) {
+        Metrics metrics = std::move(document.metrics);
+        metrics.unit = document.unit;
+        for (const auto& [name, unit] : document.units)
+            if (!metrics.find(name)) throw Error("the document: 'units.{}' is the unit of no metric", name);
+        for (Metric& metric : metrics.values) {
+            const auto found = std::ranges::find(document.units, metric.name, &std::pair<std::string, Unit>::first);
+            if (found == document.units.end()) throw Error("the document: 'units.{}' is missing", metric.name);
+            metric.unit = found->second;
         }
         return metrics;
     }

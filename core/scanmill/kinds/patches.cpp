@@ -13,23 +13,14 @@
 /// the other polynomial, else null. `unit` and `frame` are null if unknown. Numbers are read back bit for bit.
 #include "scanmill/data/patches.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/data/bounds.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
 namespace {
-
-// By PatchKind and by Combine.
-constexpr std::array<std::string_view, 4> kind_names_of_tets{"face", "edge", "sharp", "continuation"};
-constexpr std::array<std::string_view, 3> combine_names{"none", "max", "min"};
 
 std::size_t number_of_patches(const PatchComplex& patches) {
     std::size_t most = 0;
@@ -81,123 +72,52 @@ void require_consistent(const PatchComplex& patches) {
     }
 }
 
-Json tet_json(const PatchComplex& patches, std::size_t row) {
-    const u32 edge = patches.edges[row], partner = patches.partners[row];
-    return {{"vertices", patches.tets[row]},
-            {"weights", patches.weights[row]},
-            {"kind", kind_names_of_tets[static_cast<std::size_t>(patches.kinds[row])]},
-            {"side", patches.sides[row]},
-            {"patch", patches.triangles[row]},
-            {"edge", edge == PatchComplex::no_edge ? Json(nullptr) : Json(edge)},
-            {"combine", combine_names[static_cast<std::size_t>(patches.combine[row])]},
-            {"partner", partner == PatchComplex::no_partner ? Json(nullptr) : Json(partner)}};
-}
-
-u32 index_of(const Json& json, u64 below, const std::string& what) {
-    if (!json.is_number_unsigned() || json.get<u64>() >= below)
-        throw Error("{} is not a whole number from 0 to {}", what, below - 1);
-    return json.get<u32>();
-}
-
-class PatchesReader {
-public:
-    PatchComplex read(const Json& document) {
-        require_document(document, {"scanmill", "unit", "frame", "points", "tets"});
-        PatchComplex patches;
-        patches.frame.unit = unit_member(document);
-        patches.frame.name = text_member(document, "frame", "the document");
-        Array<Vec3> positions;
-        for (const Json& point : list_member(document, "points", "the document"))
-            positions.push_back(vector_of(point, fmt::format("point {}", positions.size())));
-        patches.frame.origin = distant_origin(bounding_box(positions));
-        for (Vec3& p : positions) p -= patches.frame.origin;
-        points_ = positions.size();
-        patches.positions = std::move(positions);
-        const Json& tets = list_member(document, "tets", "the document");
-        count_ = tets.size();
-        for (const Json& tet : tets) read_tet(tet, fmt::format("tetrahedron {}", tets_.size()));
-        patches.tets = std::move(tets_);
-        patches.weights = std::move(weights_);
-        patches.kinds = std::move(kinds_);
-        patches.sides = std::move(sides_);
-        patches.triangles = std::move(triangles_);
-        patches.edges = std::move(edges_);
-        patches.combine = std::move(combine_);
-        patches.partners = std::move(partners_);
-        for (std::size_t row = 0; row < count_; ++row) require_partner(patches, row);
-        return patches;
-    }
-
-private:
-    void read_tet(const Json& json, const std::string& place) {
-        if (!json.is_object()) throw Error("{} is not an object", place);
-        require_keys(json, place, {"vertices", "weights", "kind", "side", "patch", "edge", "combine", "partner"});
-        const Json& vertices = list_member(json, "vertices", place);
-        std::array<u32, 4> tet;
-        if (vertices.size() != tet.size()) throw Error("{} has {} vertices; 4 are needed", place, vertices.size());
-        for (std::size_t i = 0; i < tet.size(); ++i) tet[i] = index_of(vertices[i], points_, place + ": a vertex");
-        require_four_points(tet, tets_.size());
-        const std::vector<double> numbers =
-            numbers_of(member(json, "weights"), PatchWeights().size(), place + ": 'weights'");
-        PatchWeights weights;
-        std::ranges::copy(numbers, weights.begin());
-        const auto kind = name_member<PatchKind>(json, "kind", kind_names_of_tets, place);
-        const auto combine = name_member<Combine>(json, "combine", combine_names, place);
-        constexpr u64 most = PatchComplex::no_edge;
-        const Json &edge = member(json, "edge"), &partner = member(json, "partner");
-        tets_.push_back(tet);
-        weights_.push_back(weights);
-        kinds_.push_back(kind);
-        sides_.push_back(static_cast<u8>(index_of(member(json, "side"), 2, place + ": 'side'")));
-        triangles_.push_back(index_of(member(json, "patch"), most, place + ": 'patch'"));
-        edges_.push_back(edge.is_null() ? PatchComplex::no_edge : index_of(edge, most, place + ": 'edge'"));
-        combine_.push_back(combine);
-        partners_.push_back(partner.is_null() ? PatchComplex::no_partner
-                                              : index_of(partner, count_, place + ": 'partner'"));
-    }
-
-    template <class Enum, std::size_t count>
-    static Enum name_member(const Json& json, const char* name, const std::array<std::string_view, count>& names,
-                            const std::string& place) {
-        const std::string text = text_member(json, name, place);
-        const auto found = std::ranges::find(names, text);
-        if (found == names.end())
-            throw Error("{}: unknown {} '{}'; expected {}", place, name, text, fmt::join(names, ", "));
-        return static_cast<Enum>(found - names.begin());
-    }
-
-    std::size_t points_ = 0, count_ = 0;
-    Array<std::array<u32, 4>> tets_;
-    Array<PatchWeights> weights_;
-    Array<PatchKind> kinds_;
-    Array<u8> sides_;
-    Array<u32> triangles_, edges_, partners_;
-    Array<Combine> combine_;
+struct TetDocument {
+    std::array<u32, 4> vertices{};
+    PatchWeights weights{};
+    PatchKind kind{};
+    u8 side = 0;
+    u32 patch = 0;
+    u32 edge = PatchComplex::no_edge;
+    Combine combine{};
+    u32 partner = PatchComplex::no_partner;
 };
+constexpr auto fields(const TetDocument*) {
+    using T = TetDocument;
+    return std::tuple{
+        field("vertices", &T::vertices, "Rows of the points."),
+        field("weights", &T::weights, "c_ijkl, (i, j, k, l) falling lexicographically: 3000, 2100, …, 0003."),
+        field("kind", &T::kind),
+        field("side", &T::side, "1 outside the mesh, 0 inside."),
+        field("patch", &T::patch, "The row of the mesh's triangle."),
+        field("edge", &T::edge, "The number of the mesh's edge; null: it is over a triangle.").nullable(),
+        field("combine", &T::combine, "How the function is combined with the partner's."),
+        field("partner", &T::partner, "The row of the other tetrahedron with the same points; null: none.").nullable()};
+}
+
+struct PatchesDocument {
+    Frame frame;
+    Array<Vec3> points;
+    std::vector<TetDocument> tets;
+};
+constexpr auto fields(const PatchesDocument*) {
+    using T = PatchesDocument;
+    return std::tuple{field("frame", &T::frame).flat(), field("points", &T::points, "World coordinates."),
+                      field("tets", &T::tets)};
+}
+
+template <class Member>
+Buffer<Member> column(const std::vector<TetDocument>& tets, Member TetDocument::*member) {
+    Array<Member> values;
+    for (const TetDocument& tet : tets) values.push_back(tet.*member);
+    return values;
+}
 
 }  // namespace
 
 template <>
-struct KindTraits<PatchComplex> : FromPositions<PatchComplex> {
+struct KindTraits<PatchComplex> : FromPositions<PatchComplex>, HasDocument<PatchComplex, PatchesDocument> {
     static constexpr std::string_view name = "patches";
-    static void visit(FieldVisitor& visitor, PatchComplex& patches) {
-        visitor.frame("frame", patches.frame);
-        visitor.positions("positions", patches.positions);
-        visitor.plain("tets", patches.tets);
-        // A gradient has no unit, so a value of the function is a length.
-        constexpr std::size_t each = std::tuple_size_v<PatchWeights>;
-        Buffer<double> weights(patches.weights.owner(), reinterpret_cast<const double*>(patches.weights.data()),
-                               each * patches.weights.size());
-        visitor.lengths("weights", weights, 1);
-        patches.weights = Buffer<PatchWeights>(weights.owner(), reinterpret_cast<const PatchWeights*>(weights.data()),
-                                               weights.size() / each);
-        visitor.plain("kinds", patches.kinds);
-        visitor.plain("sides", patches.sides);
-        visitor.plain("triangles", patches.triangles);
-        visitor.plain("edges", patches.edges);
-        visitor.plain("combine", patches.combine);
-        visitor.plain("partners", patches.partners);
-    }
     static std::vector<PropertySpec> property_specs() {
         return {{"tetrahedra", Unit::count, "Tetrahedra."}, {"patches", Unit::count, "Triangles of the mesh."}};
     }
@@ -209,16 +129,32 @@ struct KindTraits<PatchComplex> : FromPositions<PatchComplex> {
         if (patches.tets.empty()) throw Error("the result has no tetrahedra");
     }
     static constexpr std::string_view json_member = "tets";
-    static void to_json(const PatchComplex& patches, Json& document) {
-        document = {{"scanmill", 1},
-                    {"unit", unit_json(patches.frame.unit)},
-                    {"frame", patches.frame.name.empty() ? Json(nullptr) : Json(patches.frame.name)},
-                    {"points", Json::array()},
-                    {"tets", Json::array()}};
-        for (const Vec3& p : patches.positions) document["points"].push_back(json_of(Vec3(patches.frame.origin + p)));
-        for (std::size_t row = 0; row < patches.tets.size(); ++row) document["tets"].push_back(tet_json(patches, row));
+    static PatchesDocument document(const PatchComplex& patches) {
+        PatchesDocument document{patches.frame, {patches.positions.begin(), patches.positions.end()}, {}};
+        for (std::size_t row = 0; row < patches.tets.size(); ++row)
+            document.tets.push_back({patches.tets[row], patches.weights[row], patches.kinds[row], patches.sides[row],
+                                     patches.triangles[row], patches.edges[row], patches.combine[row],
+                                     patches.partners[row]});
+        return document;
     }
-    static PatchComplex from_json(const Json& document, const OnWarning&) { return PatchesReader().read(document); }
+    static PatchComplex object(const PatchesDocument& document) {
+        const std::vector<TetDocument>& tets = document.tets;
+        for (std::size_t row = 0; row < tets.size(); ++row)
+            if (tets[row].side > 1)
+                throw Error("the document: 'tets[{}].side' is {}; expected 0 or 1", row, tets[row].side);
+        const PatchComplex patches{document.frame,
+                                   document.points,
+                                   column(tets, &TetDocument::vertices),
+                                   column(tets, &TetDocument::weights),
+                                   column(tets, &TetDocument::kind),
+                                   column(tets, &TetDocument::side),
+                                   column(tets, &TetDocument::patch),
+                                   column(tets, &TetDocument::edge),
+                                   column(tets, &TetDocument::combine),
+                                   column(tets, &TetDocument::partner)};
+        require_consistent(patches);
+        return patches;
+    }
 };
 
 template Kind kind_of<PatchComplex>();

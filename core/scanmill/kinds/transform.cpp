@@ -10,7 +10,6 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
@@ -75,48 +74,59 @@ RigidTransform motion_of(std::span<const double, 16> matrix, std::string_view pl
 
 namespace {
 
-/// Four rows of four numbers, row by row.
-std::array<double, 16> matrix_of(const Json& rows, const std::string& place) {
-    if (!rows.is_array() || rows.size() != 4) throw Error("{}: 'matrix' is not a list of 4 rows", place);
-    std::array<double, 16> values;
-    for (std::size_t row = 0; row < 4; ++row)
-        std::ranges::copy(numbers_of(rows[row], 4, fmt::format("{}: row {} of 'matrix'", place, row + 1)),
-                          values.begin() + static_cast<std::ptrdiff_t>(4 * row));
-    return values;
+struct PoseDocument {
+    std::string scan;
+    std::optional<std::array<double, 4>> rotation;
+    std::optional<Vec3> translation;
+    std::optional<std::array<std::array<double, 4>, 4>> matrix;
+};
+constexpr auto fields(const PoseDocument*) {
+    using T = PoseDocument;
+    return std::tuple{field("scan", &T::scan, "The name of the coordinate system, or of the scan, that it starts from.")
+                          .nullable()
+                          .optional(),
+                      field("rotation", &T::rotation, "A quaternion x, y, z, w.").optional(),
+                      field("translation", &T::translation).optional(),
+                      field("matrix", &T::matrix, "In place of both: four rows.").optional()};
 }
 
-RigidTransform motion_at(const Json& item, const std::string& place, const OnWarning& warn) {
-    if (!item.contains("matrix")) {
-        RigidTransform motion;
-        const std::vector<double> quaternion = numbers_of(member(item, "rotation"), 4, place + ": 'rotation'");
-        motion.rotation = rotation_of(std::span<const double, 4>(quaternion), place, warn);
-        motion.translation = vector_of(member(item, "translation"), place + ": 'translation'");
-        return motion;
+struct PosesDocument {
+    LengthUnit unit = LengthUnit::unknown;
+    std::string frame;
+    std::vector<PoseDocument> poses;
+};
+constexpr auto fields(const PosesDocument*) {
+    using T = PosesDocument;
+    return std::tuple{field("unit", &T::unit).nullable().optional(),
+                      field("frame", &T::frame, "The coordinate system that it leads to.").nullable().optional(),
+                      field("poses", &T::poses)};
+}
+
+RigidTransform motion_at(const PoseDocument& pose, const std::string& place, const OnWarning& warn) {
+    if (pose.matrix) {
+        for (const auto& [name, is_given] :
+             {std::pair("rotation", pose.rotation.has_value()), std::pair("translation", pose.translation.has_value())})
+            if (is_given) throw Error("{}: has a matrix and '{}'; expected one of the two ways", place, name);
+        return motion_of(std::span<const double, 16>(pose.matrix->front().data(), 16), place);
     }
-    for (const char* other : {"rotation", "translation"})
-        if (item.contains(other)) throw Error("{}: has a matrix and '{}'; expected one of the two ways", place, other);
-    return motion_of(matrix_of(member(item, "matrix"), place), place);
+    if (!pose.rotation) throw Error("{}: 'rotation' is missing", place);
+    if (!pose.translation) throw Error("{}: 'translation' is missing", place);
+    RigidTransform motion;
+    motion.rotation = rotation_of(*pose.rotation, place, warn);
+    motion.translation = *pose.translation;
+    return motion;
 }
 
 }  // namespace
 
-std::vector<ScanPose> poses_from_json(const Json& document, const OnWarning& warn) {
-    require_document(document, {"scanmill", "unit", "frame", "poses"});
-    const LengthUnit unit = unit_member(document);
-    const std::string frame = text_member(document, "frame", "the document");
-    const Json& list = member(document, "poses");
-    if (!list.is_array() || list.empty()) throw Error("contains no pose; expected \"poses\" to be a list of poses");
-
+std::vector<ScanPose> poses_from_json(const Json& json, const OnWarning& warn) {
+    const auto document = from_document<PosesDocument>(json);
+    if (document.poses.empty()) throw Error("contains no pose; expected \"poses\" to be a list of poses");
     std::vector<ScanPose> poses;
-    for (const Json& item : list) {
-        const std::string place = fmt::format("pose {}", poses.size() + 1);
-        if (!item.is_object()) throw Error("{} is not an object", place);
-        require_keys(item, place, {"scan", "rotation", "translation", "matrix"});
-        ScanPose pose;
-        pose.scan = text_member(item, "scan", place);
-        pose.transform = motion_at(item, place, warn);
-        pose.transform.unit = unit;
-        pose.transform.to = frame;
+    for (const PoseDocument& each : document.poses) {
+        ScanPose pose{each.scan, motion_at(each, fmt::format("pose {}", poses.size() + 1), warn)};
+        pose.transform.unit = document.unit;
+        pose.transform.to = document.frame;
         poses.push_back(std::move(pose));
     }
     return poses;
@@ -125,26 +135,16 @@ std::vector<ScanPose> poses_from_json(const Json& document, const OnWarning& war
 template <>
 struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<RigidTransform> {
     static constexpr std::string_view name = "transform";
-    static void visit(FieldVisitor& visitor, RigidTransform& transform) {
-        visitor.small("rotation", transform.rotation);
-        visitor.small("translation", transform.translation);
-        visitor.small("unit", transform.unit);
-        visitor.small("from", transform.from);
-        visitor.small("to", transform.to);
-    }
     static constexpr std::string_view json_member = "poses";
-    static void to_json(const RigidTransform& transform, Json& document) {
-        Json pose = Json::object(), rows = Json::array();
-        if (!transform.from.empty()) pose["scan"] = transform.from;
-        for (int row = 0; row < 3; ++row)
-            rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2),
-                            transform.translation[row]});
-        rows.push_back({0, 0, 0, 1});
-        pose["matrix"] = std::move(rows);
-        document = {{"scanmill", 1}};
-        if (transform.unit != LengthUnit::unknown) document["unit"] = symbol(transform.unit);
-        if (!transform.to.empty()) document["frame"] = transform.to;
-        document["poses"] = Json::array({std::move(pose)});
+    static void to_json(const RigidTransform& transform, Json& json) {
+        PoseDocument pose{transform.from, {}, {}, std::array<std::array<double, 4>, 4>{}};
+        for (std::size_t row = 0; row < 3; ++row) {
+            const auto at = static_cast<Eigen::Index>(row);
+            const auto r = transform.rotation.row(at);
+            (*pose.matrix)[row] = {r[0], r[1], r[2], transform.translation[at]};
+        }
+        json = document_of(PosesDocument{transform.unit, transform.to, {pose}});
+        json["poses"][0]["matrix"][3] = {0, 0, 0, 1};
     }
     static RigidTransform from_json(const Json& document, const OnWarning& warn) {
         const std::vector<ScanPose> poses = poses_from_json(document, warn);
@@ -152,6 +152,11 @@ struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<R
         RigidTransform transform = poses.front().transform;
         transform.from = poses.front().scan;
         return transform;
+    }
+    static Json schema() {
+        Json schema = schema::document(name, JsonForm<PosesDocument>::schema());
+        schema["properties"]["poses"].update({{"minItems", 1}, {"maxItems", 1}});
+        return schema;
     }
 };
 

@@ -11,6 +11,7 @@
 ///
 /// The JSON form of a transform is such a document with one pose, written as a matrix, which keeps every bit.
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 
 #include "scanmill/data/transform.hpp"

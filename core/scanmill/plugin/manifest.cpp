@@ -1,173 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/manifest.hpp"
 
-#include <concepts>
-#include <nlohmann/json.hpp>
-#include <utility>
-
 #include "scanmill/base/error.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int manifest_version = 1;
-
-template <class T>
-concept HasName = Named<T> || std::same_as<T, Kind>;
-template <class T>
-concept List = std::same_as<T, std::vector<typename T::value_type>>;
-template <class T>
-concept Optional = std::same_as<T, std::optional<typename T::value_type>>;
-
-std::optional<Kind> find_named(const std::string& name, Kind) { return kind_named(name); }
-template <Named T>
-std::optional<T> find_named(const std::string& name, T) {
-    return value_named<T>(name);
-}
-
-/// Reads or writes the members of a JSON object.
-class Archive {
-public:
-    enum class Mode { read, write };
-
-    Archive(Json& json, Mode mode) : json_(json), reads_(mode == Mode::read) {}
-
-    /// A required member.
-    template <class T>
-    Archive& operator()(const char* key, T& member) {
-        if (reads_ && (!json_.is_object() || !json_.contains(key)))
-            throw Error("is not a manifest: '{}' is missing", key);
-        convert(json_[key], key, member);
-        return *this;
+/// With the default value as it is written in a workflow: a text, or a list of texts.
+template <>
+struct JsonForm<ParameterSpec> : FieldsForm<ParameterSpec> {
+    static Json write(const ParameterSpec& spec) {
+        Json json = FieldsForm::write(spec);
+        if (std::holds_alternative<std::monostate>(spec.default_value)) return json;
+        const WrittenParameter value = written(spec.default_value);
+        json["default"] = value.list ? json_of(value.items) : json_of(value.items.front());
+        return json;
     }
-    /// A member that is absent if it has the value of a default-constructed one.
-    template <class T>
-    Archive& optional(const char* key, T& member) {
-        return (reads_ ? json_.contains(key) : member != T{}) ? (*this)(key, member) : *this;
+    static void read(const Json& json, ParameterSpec& spec) {
+        require_object(json);
+        require_known(json, names({"default"}));
+        read_members(json, spec);
+        const auto found = json.find("default");
+        if (found == json.end()) return;
+        WrittenParameter value{{}, found->is_array()};
+        if (value.list)
+            scanmill::read_member(*found, "default", value.items);
+        else
+            scanmill::read_member(*found, "default", value.items.emplace_back());
+        spec.default_value = parse(spec, value);
     }
-    Archive& version(const char* key) {
-        int version = manifest_version;
-        (*this)(key, version);
-        if (version != manifest_version)
-            throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
-        return *this;
+    static Json schema() {
+        Json object = FieldsForm::schema();
+        const Json text{{"type", {"string", "array"}}, {"items", schema::type("string")}};
+        schema::add(object, "default", schema::described("As it is written in a workflow.", "", text), false);
+        return object;
     }
-    void default_value(const char* key, ParameterSpec& parameter) {
-        if (reads_ ? !json_.contains(key) : std::holds_alternative<std::monostate>(parameter.default_value)) return;
-        WrittenParameter value =
-            reads_ ? WrittenParameter{{}, json_[key].is_array()} : written(parameter.default_value);
-        if (!value.list) value.items.resize(1);
-        value.list ? (*this)(key, value.items) : (*this)(key, value.items.front());
-        if (reads_) parameter.default_value = parse(parameter, value);
-    }
-
-private:
-    template <class T>
-    void convert(Json& json, const char* key, T& value) {
-        if constexpr (HasName<T>) {
-            if (!reads_) {
-                json = name_of(value);
-                return;
-            }
-            const auto name = json.get<std::string>();
-            const std::optional<T> found = find_named(name, T{});
-            if (!found) throw Error("{}: '{}' is unknown", key, name);
-            value = *found;
-        } else if constexpr (List<T>) {
-            if (reads_) value.resize(json.get_ref<const Json::array_t&>().size());
-            if (!reads_) json = Json(value.size(), Json());
-            for (std::size_t i = 0; i < value.size(); ++i) convert(json[i], key, value[i]);
-        } else if constexpr (Optional<T>) {
-            convert(json, key, reads_ ? value.emplace() : *value);
-        } else if constexpr (requires(Archive& archive) { members(archive, value); }) {
-            Archive archive(json, reads_ ? Mode::read : Mode::write);
-            members(archive, value);
-        } else if (!reads_) {
-            json = value;
-        } else {
-            if constexpr (std::integral<T> && !std::same_as<T, bool>) {  // get() would convert 1.5 and 1e300
-                const bool fits = json.is_number_unsigned()
-                                      ? std::in_range<T>(json.get<std::uint64_t>())
-                                      : json.is_number_integer() && std::in_range<T>(json.get<std::int64_t>());
-                if (!fits) throw Error("is not a manifest: '{}' is not an integer, or too large", key);
-            }
-            value = json.get<T>();
-        }
-    }
-
-    Json& json_;
-    bool reads_;
 };
 
-void members(Archive& archive, Bound& bound) { archive("value", bound.value)("inclusive", bound.inclusive); }
-void members(Archive& archive, Choice& choice) { archive("name", choice.name)("help", choice.help); }
-void members(Archive& archive, StreamSpec& stream) { archive("given", stream.given); }
-void members(Archive& archive, MeasureSpec& measure) { archive("value", measure.value)("truth", measure.truth); }
-void members(Archive& archive, PortSpec& port) {
-    archive("name", port.name)("kind", port.kind)("help", port.help);
-    archive.optional("list", port.list).optional("optional", port.optional).optional("also", port.also);
-    archive.optional("like", port.like).optional("maker", port.maker).optional("by-name", port.by_name);
-}
-void members(Archive& archive, MetricSpec& metric) {
-    archive("name", metric.name)("unit", metric.unit)("help", metric.help);
-    archive.optional("headline", metric.headline).optional("numbered", metric.numbered);
-    archive.optional("better", metric.better);
-}
-void members(Archive& archive, ParameterSpec& parameter) {
-    archive("name", parameter.name)("type", parameter.type)("help", parameter.help);
-    archive.optional("list", parameter.list).optional("size", parameter.size);
-    archive.optional("required", parameter.required).optional("word", parameter.word);
-    archive.optional("low", parameter.low).optional("high", parameter.high).optional("choices", parameter.choices);
-    archive.optional("unless-given", parameter.unless_given).optional("takes-spacings", parameter.takes_spacings);
-    archive.default_value("default", parameter);
-}
-void members(Archive& archive, Manifest& manifest) {
-    FilterSpec& spec = manifest.spec;
-    archive.version("scanmill-manifest")("abi", manifest.abi)("name", spec.name)("version", spec.version);
-    archive("summary", spec.summary)("source", spec.source)("ties", spec.ties)("not-finite", spec.not_finite);
-    archive("inputs", spec.inputs)("outputs", spec.outputs)("parameters", spec.parameters)("metrics", spec.metrics);
-    archive.optional("streams", spec.streams).optional("measures", spec.measures).optional("adds", spec.adds);
-}
-void members(Archive& archive, FormatManifest& manifest) {
-    FormatSpec& spec = manifest.spec;
-    archive.version("scanmill-format")("abi", manifest.abi)("name", spec.name)("extensions", spec.extensions);
-    archive("begins", spec.begins)("writes", spec.writes)("reads", spec.reads);
-}
+namespace {
 
-std::string text_of(auto manifest) {
-    Json json;
-    Archive archive(json, Archive::Mode::write);
-    members(archive, manifest);
+constexpr int manifest_version = 1;
+constexpr const char *filter_key = "scanmill-manifest", *format_key = "scanmill-format";
+
+template <class AnyManifest>
+std::string text_of(const AnyManifest& manifest, const char* version_key) {
+    Json json{{version_key, manifest_version}};
+    JsonForm<AnyManifest>::write_members(json, manifest);
     return json.dump(2) + "\n";
 }
 
 template <class AnyManifest>
-AnyManifest parsed(std::string_view text) try {
-    Json json = Json::parse(text);
+AnyManifest parsed(std::string_view text, const char* version_key) try {
+    const Json json = Json::parse(text);
+    if (!json.is_object() || !json.contains(version_key))
+        throw Error("is not a manifest: '{}' is missing", version_key);
+    int version = 0;
+    read_member(json[version_key], version_key, version);
+    if (version != manifest_version)
+        throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
     AnyManifest manifest;
-    Archive archive(json, Archive::Mode::read);
-    members(archive, manifest);
+    require_known(json, JsonForm<AnyManifest>::names({version_key}));
+    JsonForm<AnyManifest>::read_members(json, manifest);
     return manifest;
 } catch (const Json::parse_error&) {
     throw Error("is not a manifest: invalid JSON");
-} catch (const Json::exception&) {
-    throw Error("is not a manifest: a member is missing or has another type");
+} catch (const JsonMismatch& mismatch) {
+    throw_mismatch(mismatch, "is not a manifest");
 }
 
 }  // namespace
 
-std::string to_json_text(const Manifest& manifest) { return text_of(manifest); }
-std::string to_json_text(const FormatManifest& manifest) { return text_of(manifest); }
+std::string to_json_text(const Manifest& manifest) { return text_of(manifest, filter_key); }
+std::string to_json_text(const FormatManifest& manifest) { return text_of(manifest, format_key); }
 
-Manifest parse_manifest(std::string_view text) { return parsed<Manifest>(text); }
+Manifest parse_manifest(std::string_view text) { return parsed<Manifest>(text, filter_key); }
 
 FormatManifest parse_format_manifest(std::string_view text) {
-    FormatManifest manifest = parsed<FormatManifest>(text);
+    auto manifest = parsed<FormatManifest>(text, format_key);
     if (manifest.spec.name.empty() || manifest.spec.extensions.empty()) throw Error("names no format, or no extension");
     return manifest;
 }
+
+Json declaration_json(const FilterSpec& spec) { return json_of(spec); }
+Json declaration_schema() { return JsonForm<FilterSpec>::schema(); }
 
 }  // namespace scanmill

@@ -3,6 +3,7 @@
 /// The manifest of a module: its declaration as JSON, written at build time beside the module, so that listing,
 /// checking and schema generation load no code.
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ struct Manifest {
 
     bool operator==(const Manifest&) const = default;
 };
+constexpr auto fields(const Manifest*) {
+    return std::tuple{field("abi", &Manifest::abi), field("spec", &Manifest::spec).flat()};
+}
 
 struct FormatSpec {
     std::string name;  ///< "PCD"
@@ -31,12 +35,20 @@ struct FormatSpec {
 
     bool operator==(const FormatSpec&) const = default;
 };
+constexpr auto fields(const FormatSpec*) {
+    using T = FormatSpec;
+    return std::tuple{field("name", &T::name), field("extensions", &T::extensions), field("begins", &T::begins),
+                      field("writes", &T::writes), field("reads", &T::reads)};
+}
 
 /// Of a file format's module.
 struct FormatManifest {
     std::string abi;
     FormatSpec spec;
 };
+constexpr auto fields(const FormatManifest*) {
+    return std::tuple{field("abi", &FormatManifest::abi), field("spec", &FormatManifest::spec).flat()};
+}
 
 /// Indented JSON with a trailing newline, which reads back to an equal manifest.
 std::string to_json_text(const Manifest& manifest);
@@ -44,5 +56,9 @@ std::string to_json_text(const FormatManifest& manifest);
 /// Throw Error with what is wrong with the text.
 Manifest parse_manifest(std::string_view text);
 FormatManifest parse_format_manifest(std::string_view text);
+
+/// A filter's declaration as its manifest has it, for programs.
+nlohmann::ordered_json declaration_json(const FilterSpec& spec);
+nlohmann::ordered_json declaration_schema();
 
 }  // namespace scanmill

@@ -28,7 +28,7 @@ enum class Meaning {
     plain,      ///< not at all
     position,   ///< a point relative to the frame's origin; JSON has world coordinates
     direction,  ///< a unit vector, or zero: a motion turns it
-    length      ///< another unit scales it
+    length      ///< another unit scales it; not negative
 };
 
 template <class Owner, class Type>
@@ -40,6 +40,7 @@ struct Field {
     const char* doc;
     const char* unit_text = "";
     Meaning meaning = Meaning::plain;
+    int exponent = 1;  ///< of a length
     bool is_optional = false;
     bool is_nullable = false;
     bool is_flat = false;
@@ -52,9 +53,10 @@ struct Field {
         field.unit_text = text;
         return field;
     }
-    constexpr Field means(Meaning what) const {
+    constexpr Field means(Meaning what, int length_exponent = 1) const {
         Field field = *this;
         field.meaning = what;
+        field.exponent = length_exponent;
         return field;
     }
     /// Absent where it has the value of a default-constructed one.
@@ -63,7 +65,8 @@ struct Field {
         field.is_optional = true;
         return field;
     }
-    /// A number that may be NaN, a text that may be empty: null in JSON.
+    /// A number that may be NaN, an index that may be the largest one, a text that may be empty: null in JSON, and
+    /// absent is read as null.
     constexpr Field nullable() const {
         Field field = *this;
         field.is_nullable = true;
@@ -81,8 +84,8 @@ struct Field {
         field.is_by_name = true;
         return field;
     }
-    /// Null, and unchanged when it is read, for objects that the condition does not hold for. Fields that the condition
-    /// uses come before this one.
+    /// Null, and unchanged when it is read, for objects that the condition does not hold for. The condition uses fields
+    /// without a condition.
     constexpr Field only_if(bool (*condition)(const Owner&)) const {
         Field field = *this;
         field.applies = condition;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -61,6 +62,16 @@ void require_known(const Json& object, const std::vector<std::string_view>& know
     }
 }
 
+void require_meaning(Meaning meaning, double number) {
+    if (meaning == Meaning::length && !(number >= 0)) throw JsonMismatch{{}, "is not a length of 0 or more"};
+}
+
+void require_meaning(Meaning meaning, const Eigen::Vector3d& vector) {
+    constexpr double most = 1e-4;
+    if (meaning == Meaning::direction && !(std::abs(vector.norm() - 1) <= most))
+        throw JsonMismatch{{}, fmt::format("has the length {:.6g}; a direction's is 1", vector.norm())};
+}
+
 std::string expected_names(std::span<const std::string_view> names, std::string_view found) {
     const std::vector<std::string> all(names.begin(), names.end());
     return fmt::format("is '{}'; expected {}{}", found, enumerated(all), did_you_mean(std::string(found), all));
@@ -76,8 +87,8 @@ Json described(std::string_view text, std::string_view unit, Json schema) {
 }
 
 Json or_null(Json schema) {
-    if (schema.contains("enum")) {
-        schema["enum"].push_back(nullptr);
+    if (const auto values = schema.find("enum"); values != schema.end()) {
+        if (std::ranges::find(*values, Json()) == values->end()) values->push_back(nullptr);
     } else if (const auto type = schema.find("type"); type != schema.end() && type->is_string()) {
         *type = Json::array({*type, "null"});
     } else if (type == schema.end()) {

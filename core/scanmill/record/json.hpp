@@ -333,9 +333,18 @@ struct JsonForm<std::variant<Types...>> {
 template <class T>
 struct JsonByName;
 
+/// Throws JsonMismatch for a negative length, and for a direction whose length is not 1.
+void require_meaning(Meaning meaning, double number);
+void require_meaning(Meaning meaning, const Eigen::Vector3d& vector);
+
+template <class T>
+inline constexpr bool is_std_optional = false;
+template <class T>
+inline constexpr bool is_std_optional<std::optional<T>> = true;
+
 /// Described structs. A frame's origin is added to positions by the owner of the frame, before and after.
 template <Described T>
-struct JsonForm<T> {
+struct FieldsForm {
     static Json write(const T& object) {
         Json json = Json::object();
         write_members(json, object);
@@ -355,43 +364,34 @@ struct JsonForm<T> {
                     value = JsonByName<Member>::write(member);
                     return;
                 }
-            if constexpr (std::same_as<Member, std::string>)
-                if (field.is_nullable && member.empty()) return;
+            if (field.is_nullable && is_undefined(member)) return;
             value = json_of(member);
         });
     }
 
     static void read(const Json& json, T& object) {
         require_object(json);
-        std::vector<std::string_view> known;
-        read_members(json, object, known);
-        require_known(json, known);
+        require_known(json, names());
+        read_members(json, object);
     }
-    static void read_members(const Json& json, T& object, std::vector<std::string_view>& known) {
+    static void read_members(const Json& json, T& object) {
+        for (const bool is_conditional : {false, true})
+            for_each_field<T>([&](const auto& field) {
+                if ((field.applies != nullptr) == is_conditional) read_member(field, json, object);
+            });
+    }
+    /// Of all members, after those that are `known`.
+    static std::vector<std::string_view> names(std::vector<std::string_view> known = {}) {
         for_each_field<T>([&](const auto& field) {
-            auto& member = object.*field.member;
-            using Member = std::remove_cvref_t<decltype(member)>;
+            using Member = MemberOf<decltype(field)>;
             if constexpr (Described<Member>)
-                if (field.is_flat) return JsonForm<Member>::read_members(json, member, known);
-            known.push_back(field.name);
-            const auto found = json.find(field.name);
-            if (found == json.end()) {
-                if (!field.is_optional) throw JsonMismatch{field.name, "is missing"};
-                member = default_of(field);
-                return;
-            }
-            try {
-                if (field.applies && !field.applies(object)) {
-                    if (!found->is_null()) throw JsonMismatch{{}, "is not null, but does not apply here"};
-                } else if (field.is_nullable && found->is_null()) {
-                    set_undefined(member);
-                } else {
-                    JsonForm<Member>::read(*found, member);
+                if (field.is_flat) {
+                    known = JsonForm<Member>::names(std::move(known));
+                    return;
                 }
-            } catch (JsonMismatch& mismatch) {
-                throw std::move(mismatch).in(field.name);
-            }
+            known.push_back(field.name);
         });
+        return known;
     }
 
     static Json schema() {
@@ -401,14 +401,14 @@ struct JsonForm<T> {
     }
     static void add_schemas(Json& object) {
         for_each_field<T>([&](const auto& field) {
-            using Member = std::remove_cvref_t<decltype(std::declval<T>().*field.member)>;
+            using Member = MemberOf<decltype(field)>;
             if constexpr (Described<Member>)
                 if (field.is_flat) return JsonForm<Member>::add_schemas(object);
-            Json form;
+            Json form = JsonForm<Member>::schema();
             if constexpr (requires { JsonByName<Member>::schema(); })
-                form = field.is_by_name ? JsonByName<Member>::schema() : JsonForm<Member>::schema();
-            else
-                form = JsonForm<Member>::schema();
+                if (field.is_by_name) form = JsonByName<Member>::schema();
+            if constexpr (is_std_optional<Member>)
+                if (field.is_optional) form = JsonForm<typename Member::value_type>::schema();
             if (field.is_nullable || field.applies) form = schema::or_null(std::move(form));
             schema::add(object, field.name, schema::described(field.doc, field.unit_text, std::move(form)),
                         !field.is_optional);
@@ -416,6 +416,50 @@ struct JsonForm<T> {
     }
 
 private:
+    template <class Field>
+    using MemberOf = typename std::remove_cvref_t<Field>::Member;
+
+    static void read_member(const auto& field, const Json& json, T& object) {
+        auto& member = object.*field.member;
+        using Member = std::remove_cvref_t<decltype(member)>;
+        if constexpr (Described<Member>)
+            if (field.is_flat) return JsonForm<Member>::read_members(json, member);
+        const auto found = json.find(field.name);
+        const bool is_absent = found == json.end();
+        if (is_absent && field.is_optional) {
+            member = default_of(field);
+            return;
+        }
+        if (is_absent && !field.is_nullable && !field.applies) throw JsonMismatch{field.name, "is missing"};
+        static const Json null;
+        try {
+            read_value(field, is_absent ? null : *found, object);
+        } catch (JsonMismatch& mismatch) {
+            throw std::move(mismatch).in(field.name);
+        }
+    }
+    static void read_value(const auto& field, const Json& json, T& object) {
+        auto& member = object.*field.member;
+        using Member = std::remove_cvref_t<decltype(member)>;
+        if (field.applies && !field.applies(object)) {
+            if (!json.is_null()) throw JsonMismatch{{}, "is not null, but does not apply here"};
+            return;
+        }
+        if constexpr (std::default_initializable<Member>)
+            if (field.is_nullable && json.is_null()) {
+                member = undefined<Member>();
+                return;
+            }
+        if constexpr (requires { JsonByName<Member>::read(json, member); })
+            if (field.is_by_name) return JsonByName<Member>::read(json, member);
+        if constexpr (is_std_optional<Member>)
+            if (field.is_optional) return JsonForm<typename Member::value_type>::read(json, member.emplace());
+        JsonForm<Member>::read(json, member);
+        if constexpr (std::same_as<Member, double>)
+            if (!field.is_nullable || member == member) require_meaning(field.meaning, member);
+        if constexpr (std::same_as<Member, Eigen::Vector3d>) require_meaning(field.meaning, member);
+    }
+
     /// The member of a default-constructed object.
     static const auto& default_of(const auto& field) {
         static const T object{};
@@ -423,12 +467,12 @@ private:
     }
     template <class Member>
     static bool is_default(const auto& field, const Member& member) {
-        if constexpr (requires { member.empty(); })
+        if constexpr (requires { member.has_value(); })
+            return !member.has_value();
+        else if constexpr (requires { member.empty(); })
             return member.empty();
         else if constexpr (requires { member.values.empty(); })
             return member.values.empty();
-        else if constexpr (requires { member.has_value(); })
-            return !member.has_value();
         else if constexpr (requires { std::variant_size<Member>::value; })
             return false;
         else if constexpr (std::equality_comparable<Member>)
@@ -437,13 +481,23 @@ private:
             return false;
     }
     template <class Member>
-    static void set_undefined(Member& member) {
-        if constexpr (std::floating_point<Member>)
-            member = std::numeric_limits<Member>::quiet_NaN();
-        else if constexpr (std::default_initializable<Member>)
-            member = Member();
+    static Member undefined() {
+        if constexpr (std::floating_point<Member>) return std::numeric_limits<Member>::quiet_NaN();
+        if constexpr (std::unsigned_integral<Member>) return std::numeric_limits<Member>::max();
+        return Member();
+    }
+    /// NaN stays NaN, which JSON text writes as null.
+    template <class Member>
+    static bool is_undefined(const Member& member) {
+        if constexpr (std::unsigned_integral<Member> || std::same_as<Member, std::string>)
+            return member == undefined<Member>();
+        else
+            return false;
     }
 };
+
+template <Described T>
+struct JsonForm<T> : FieldsForm<T> {};
 
 template <class T>
 void read_json(const Json& json, T& value, std::string_view subject) {

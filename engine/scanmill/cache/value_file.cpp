@@ -8,20 +8,18 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/io/atomic_file.hpp"
 #include "scanmill/io/mapped_file.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill {
 
 namespace {
 
-using Json = nlohmann::json;
 using Bytes = std::span<const std::byte>;
 
 std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
@@ -78,7 +76,8 @@ Bytes padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) 
 class FieldWriter : public FieldVisitor {
 public:
     void frame(const char* name, Frame& frame) override {
-        header[name] = {{"unit", static_cast<int>(frame.unit)}, {"origin", frame.origin}, {"name", frame.name}};
+        header[name] = {
+            {"unit", scanmill::json_of(frame.unit)}, {"origin", scanmill::json_of(frame.origin)}, {"name", frame.name}};
     }
     void positions(const char* name, Buffer<Vec3>& positions) override { plain(name, positions); }
     void directions(const char* name, Buffer<Vec3>& directions) override { plain(name, directions); }
@@ -123,8 +122,8 @@ public:
 
     void frame(const char* name, Frame& frame) override {
         const Json& json = header_.at(name);
-        frame.unit = static_cast<LengthUnit>(json.at("unit").get<int>());
-        frame.origin = json.at("origin").get<Vec3>();
+        JsonForm<LengthUnit>::read(json.at("unit"), frame.unit);
+        JsonForm<Vec3>::read(json.at("origin"), frame.origin);
         frame.name = json.at("name").get<std::string>();
     }
     void positions(const char* name, Buffer<Vec3>& positions) override { plain(name, positions); }
@@ -170,13 +169,10 @@ ValueFields fields_of(const Value& value) {
     visited(value, writer);
     writer.header["kind"] = value.kind().name();
     for (const auto& array : writer.arrays) writer.header["arrays"].push_back(array.size());
-    ValueFields fields;
-    Json::to_cbor(writer.header, fields.header);
-    fields.arrays = std::move(writer.arrays);
-    return fields;
+    return {cbor_of(writer.header), std::move(writer.arrays)};
 }
 
-constexpr std::string_view magic = "SMVALUE2";
+constexpr std::string_view magic = "SMVALUE3";
 
 struct Preamble {
     char magic[8];
@@ -261,7 +257,7 @@ Value read_value(const std::filesystem::path& file, std::string_view content) tr
     };
     const std::string_view header = bytes.substr(sizeof preamble, preamble.header_bytes);
     require(preamble.header_hash, header);
-    const Json json = Json::from_cbor(header);
+    const Json json = json_from_cbor(header, file.string());
     std::size_t begin = std::min(bytes.size(), sizeof preamble + aligned(header.size()));
     std::string hashes;
     std::vector<Buffer<std::byte>> arrays;
@@ -284,6 +280,8 @@ Value read_value(const std::filesystem::path& file, std::string_view content) tr
     FieldReader reader(json, arrays);
     kind->info().visit(reader, object.get());
     return Value(*kind, object);
+} catch (const JsonMismatch&) {
+    throw Error("the header of '{}' is not one that Scanmill writes", file.string());
 } catch (const Json::exception&) {
     throw Error("the header of '{}' is not one that Scanmill writes", file.string());
 }

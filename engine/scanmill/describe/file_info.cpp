@@ -5,7 +5,6 @@
 
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 #include "scanmill/session/session.hpp"
 
@@ -34,8 +33,8 @@ private:
 };
 
 void add_box(Json& json, const BoundingBox& box, const Frame& frame) {
-    json["low"] = json_of(box.low + frame.origin);
-    json["high"] = json_of(box.high + frame.origin);
+    json["low"] = json_of(Vec3(box.low + frame.origin));
+    json["high"] = json_of(Vec3(box.high + frame.origin));
     json["diagonal"] = box.diagonal();
 }
 
@@ -52,7 +51,8 @@ void add_stray_points(const RobustBox& box, const Frame& frame, Json& json) {
     json["robust-diagonal"] = box.diagonal();
     Json& points = json["stray-points"] = Json::array();
     for (std::size_t i = 0; i < std::min(shown, box.stray.size()); ++i)
-        points.push_back({{"number", box.stray[i].row}, {"position", json_of(box.stray[i].position + frame.origin)}});
+        points.push_back(
+            {{"number", box.stray[i].row}, {"position", json_of(Vec3(box.stray[i].position + frame.origin))}});
 }
 
 /// The description of a scan that is read piece by piece.
@@ -62,7 +62,7 @@ Json stream_info(const std::string& file, const PointStream& scan) {
     add_box(json, scan.bounds(), scan.frame());
     add_stray_points(scan.robust_box(), scan.frame(), json);
     json["not-finite"] = 0;
-    json["unit"] = unit_json(scan.frame().unit);
+    json["unit"] = json_of(scan.frame().unit);
     add_frame(json, scan.frame());
     return json;
 }
@@ -98,7 +98,7 @@ Json file_info(const std::string& file, u64 memory) {
     if (value.find<PointCloud>()) add_stray_points(robust_box(positions.span()), frame, json);
     if (is_geometric(value.kind())) {
         json["not-finite"] = std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); });
-        json["unit"] = unit_json(frame.unit);
+        json["unit"] = json_of(frame.unit);
     }
     add_frame(json, frame);
     if (!loaded.comments.empty()) json["comments"] = loaded.comments;

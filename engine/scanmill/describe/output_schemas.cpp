@@ -7,8 +7,8 @@
 
 #include "scanmill/compare/documents.hpp"
 #include "scanmill/describe/schema_parts.hpp"
-#include "scanmill/filter/parameter.hpp"
 #include "scanmill/kinds/document.hpp"
+#include "scanmill/plugin/manifest.hpp"
 #include "scanmill/report/documents.hpp"
 
 namespace scanmill {
@@ -19,55 +19,6 @@ using namespace schema_parts;
 
 Json bytes() { return described("In bytes.", count()); }
 Json cell() { return object({{"scan", text()}, {"workflow", text()}, {"variant", text()}}); }
-
-/// FilterSpec, as manifests contain it.
-Json declaration() {
-    const Json port = object({{"name", text()},
-                              {"kind", text()},
-                              {"help", text()},
-                              {"list?", flag()},
-                              {"optional?", flag()},
-                              {"also?", described("Other kinds that it takes.", list_of(text()))},
-                              {"like?", described("The input whose kind it has.", text())},
-                              {"maker?", described("The filter that usually makes its value.", text())},
-                              {"by-name?", described("No later step takes it unless it names it.", flag())}});
-    const Json bound = object({{"value", number()}, {"inclusive", flag()}});
-    const Json parameter =
-        object({{"name", text()},
-                {"type", names(ParameterType::boolean, ParameterType::ratio)},
-                {"help", text()},
-                {"list?", flag()},
-                {"size?", count()},
-                {"required?", flag()},
-                {"word?", described("Accepted in place of a value.", text())},
-                {"low?", bound},
-                {"high?", bound},
-                {"choices?", list_of(object({{"name", text()}, {"help", text()}}))},
-                {"unless-given?", described("The default is not used if this parameter is given.", text())},
-                {"takes-spacings?", flag()},
-                {"default?",
-                 described("As it is written in a workflow.", {{"type", {"string", "array"}}, {"items", text()}})}});
-    const Json metric = object({{"name", text()},
-                                {"unit", unit()},
-                                {"help", text()},
-                                {"headline?", flag()},
-                                {"numbered?", described("Reported once per item: NAME, NAME@2, …", flag())},
-                                {"better?", names(Better::larger, Better::smaller)}});
-    return object({{"name", text()},
-                   {"version", count()},
-                   {"summary", text()},
-                   {"source", text()},
-                   {"ties", text()},
-                   {"not-finite", text()},
-                   {"inputs", list_of(port)},
-                   {"outputs", list_of(port)},
-                   {"parameters", list_of(parameter)},
-                   {"metrics", list_of(metric)},
-                   {"streams?", object({{"given", list_of(text())}})},
-                   {"measures?", described("It measures the value at one input by the truth at another.",
-                                           object({{"value", text()}, {"truth", text()}}))},
-                   {"adds?", described("Columns that it may add.", list_of(text()))}});
-}
 
 Json plan() {
     const Json input = object({{"name", text()}, {"kind", text()}, {"list", flag()}});
@@ -113,10 +64,11 @@ Json error_schema() {
 
 Json list_schema() {
     const Json unusable = object({{"name", text()}, {"manifest", text()}, {"reason", text()}});
-    return document("scanmill list", object({{"filters", list_of(declaration())}, {"unusable", list_of(unusable)}}));
+    return document("scanmill list",
+                    object({{"filters", list_of(declaration_schema())}, {"unusable", list_of(unusable)}}));
 }
 
-Json show_schema() { return document("scanmill show FILTER", object({{"filter", declaration()}})); }
+Json show_schema() { return document("scanmill show FILTER", object({{"filter", declaration_schema()}})); }
 
 Json show_example_schema() {
     return document("scanmill show FILTER, the example",

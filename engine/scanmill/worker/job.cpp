@@ -9,8 +9,8 @@
 #include <cstring>
 
 #include "scanmill/base/hash.hpp"
-#include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/kinds/document.hpp"
+#include "scanmill/plan/step_parameters.hpp"
 
 namespace scanmill {
 

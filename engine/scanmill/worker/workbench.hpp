@@ -66,8 +66,7 @@ private:
                                     JobReport& report) const;
     void add_kept(JobReport& report) const;
     void store(const Job& job, const JobCaching& caching, const std::string& run_key, const Outputs& outputs,
-               std::vector<std::string> warnings,
-               double seconds, JobReport& report);
+               std::vector<std::string> warnings, double seconds, JobReport& report);
     void store_values(const Job& job, const JobCaching& caching, const Outputs& outputs, double cost,
                       JobReport& report);
 

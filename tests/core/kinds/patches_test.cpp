@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -131,19 +130,28 @@ TEST(PatchesRefuse, BrokenJson) {
         change(json);
         return error_of([&] { patches_of(json); }).sentence();
     };
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"][2] = 9; }), HasSubstr("tetrahedron 0: a vertex"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"] = {1, 2}; }), HasSubstr("2 vertices; 4 are needed"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"][2] = 9; }),
+                HasSubstr("tetrahedron 0 names point 9; there are 5"));
+    EXPECT_THAT(refusal([](Json& j) {
+                    j["tets"][0]["vertices"] = {1, 2};
+                }),
+                HasSubstr("'tets[0].vertices' is not a list of 4"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["vertices"][3] = 0u; }),
                 HasSubstr("tetrahedron 1 names point 0 twice"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["weights"] = {1}; }), HasSubstr("not a list of 20 numbers"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["kind"] = "corner"; }), HasSubstr("unknown kind 'corner'"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "sum"; }), HasSubstr("expected none, max, min"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["weights"] = {1}; }),
+                HasSubstr("'tets[1].weights' is not a list of 20"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["kind"] = "corner"; }), HasSubstr("'tets[1].kind' is 'corner'"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "sum"; }), HasSubstr("expected none, max and min"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "max"; }), HasSubstr("1 has no partner to combine"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["partner"] = 0u; }), HasSubstr("1 has a partner without 'combine'"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["partner"] = 2u; }), HasSubstr("'partner' is not a whole number"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["side"] = 2; }), HasSubstr("'side' is not a whole number"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["patch"] = -1; }), HasSubstr("'patch' is not a whole number"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][0] = 1; }), HasSubstr("tetrahedron 0 is not an object"));
+    EXPECT_THAT(refusal([](Json& j) {
+                    j["tets"][1].update({{"partner", 2u}, {"combine", "max"}});
+                }),
+                HasSubstr("has partner 2; there are 2"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["side"] = 2; }), HasSubstr("'tets[1].side' is 2"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["patch"] = -1; }),
+                HasSubstr("'tets[1].patch' is not a whole number"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][0] = 1; }), HasSubstr("'tets[0]' is not an object"));
     const auto refusal_of_two = [](auto&& change) {
         Json json = json_of(two_functions());
         change(json["tets"]);

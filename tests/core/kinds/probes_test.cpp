@@ -8,12 +8,12 @@
 
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 /// A touch that is made and one that is not.
@@ -28,8 +28,10 @@ ProbePlan plan() {
     made.right_normal = Vec3::UnitX();
     made.interior_angle = std::numbers::pi / 2;
     made.assumed = true;
-    made.range = {-1. / 3, 1. / 7};
-    made.known_range = {-0.5, 5e-324};
+    made.phi_min = -1. / 3;
+    made.phi_max = 1. / 7;
+    made.phi_known_min = -0.5;
+    made.phi_known_max = 5e-324;
     made.phi = -0.0;
     made.approach = Vec3(0, 0.6, 0.8);
     made.start = Vec3(10, 20, 30);
@@ -48,8 +50,8 @@ ProbePlan plan() {
     missing.interior_angle = 4;
     missing.reason = ProbeReason::too_narrow;
     plan.touches = {made, missing};
-    plan.moves = {{ProbeMoveType::clearance, 0, 0, 3}, {ProbeMoveType::retract, 0, 3, 5}};
-    plan.path = {Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(10, 20, 30), Vec3(1, 2, 3), Vec3(10, 20, 30)};
+    plan.moves = {{ProbeMoveType::clearance, 0, {Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(10, 20, 30)}},
+                  {ProbeMoveType::retract, 0, {Vec3(1, 2, 3), Vec3(10, 20, 30)}}};
     plan.radius = 2;
     plan.scanner_error = 0.1;
     plan.clearance = 1. / 3;
@@ -92,22 +94,18 @@ void expect_equal(const ProbePlan& a, const ProbePlan& b) {
               &ProbeTouch::approach, &ProbeTouch::start, &ProbeTouch::centre})
             expect_same_bits(one.*field, other.*field);
         for (const auto field :
-             {&ProbeTouch::interior_angle, &ProbeTouch::phi, &ProbeTouch::false_share, &ProbeTouch::contact_distance})
+             {&ProbeTouch::interior_angle, &ProbeTouch::phi_min, &ProbeTouch::phi_max, &ProbeTouch::phi_known_min,
+              &ProbeTouch::phi_known_max, &ProbeTouch::phi, &ProbeTouch::false_share, &ProbeTouch::contact_distance})
             expect_same_bits(one.*field, other.*field);
-        expect_same_bits(one.range.min, other.range.min);
-        expect_same_bits(one.range.max, other.range.max);
-        expect_same_bits(one.known_range.min, other.known_range.min);
-        expect_same_bits(one.known_range.max, other.known_range.max);
     }
     ASSERT_EQ(a.moves.size(), b.moves.size());
     for (std::size_t row = 0; row < a.moves.size(); ++row) {
         EXPECT_EQ(a.moves[row].type, b.moves[row].type);
         EXPECT_EQ(a.moves[row].touch, b.moves[row].touch);
-        EXPECT_EQ(a.moves[row].begin, b.moves[row].begin);
-        EXPECT_EQ(a.moves[row].end, b.moves[row].end);
+        ASSERT_EQ(a.moves[row].points.size(), b.moves[row].points.size());
+        for (std::size_t i = 0; i < a.moves[row].points.size(); ++i)
+            expect_same_bits(a.moves[row].points[i], b.moves[row].points[i]);
     }
-    ASSERT_EQ(a.path.size(), b.path.size());
-    for (std::size_t row = 0; row < a.path.size(); ++row) expect_same_bits(a.path[row], b.path[row]);
     for (const auto size : {&ProbePlan::radius, &ProbePlan::scanner_error, &ProbePlan::clearance,
                             &ProbePlan::stylus_radius, &ProbePlan::stylus_length})
         expect_same_bits(a.*size, b.*size);
@@ -126,8 +124,9 @@ TEST(Probes, InAJsonFile_AreRecognised) {
 TEST(Probes, AsCsv_HaveOneRowPerTouch) {
     ProbePlan probes = plan();
     probes.touches[0].position = Vec3(1, 2, 3);
-    probes.touches[0].range = {-std::numbers::pi / 6, std::numbers::pi / 4};
-    probes.touches[0].known_range = {};
+    probes.touches[0].phi_min = -std::numbers::pi / 6;
+    probes.touches[0].phi_max = std::numbers::pi / 4;
+    probes.touches[0].phi_known_min = probes.touches[0].phi_known_max = ProbeTouch::nan;
     probes.touches[0].phi = 0;
     EXPECT_EQ(write_bytes("plan.csv", std::make_shared<const ProbePlan>(probes)),
               "# unit mm\n# frame machine\n"
@@ -147,7 +146,7 @@ TEST(Probes, InAnotherUnit_HaveScaledLengths) {
     EXPECT_DOUBLE_EQ(probes.stylus_length, 0.04);
     EXPECT_DOUBLE_EQ(probes.touches[0].start.z(), 0.03);
     EXPECT_DOUBLE_EQ(probes.touches[0].contact_distance, 2.5e-4);
-    EXPECT_DOUBLE_EQ(probes.path[0].z(), 9e-3);
+    EXPECT_DOUBLE_EQ(probes.moves[0].points[0].z(), 9e-3);
     EXPECT_EQ(probes.touches[0].approach, Vec3(0, 0.6, 0.8));
     EXPECT_EQ(probes.touches[0].interior_angle, plan().touches[0].interior_angle);
 }
@@ -164,7 +163,7 @@ TEST(Probes, Placed_HaveMovedPointsAndTurnedDirections) {
     EXPECT_EQ(world(probes.touches[0].start), Vec3(80, 10, 30));
     EXPECT_EQ(world(probes.touches[0].centre), Vec3(98, 1, 3));
     EXPECT_EQ(world(probes.touches[1].position), Vec3(94, 5, 7));
-    EXPECT_EQ(world(probes.path[1]), Vec3(100, 1, 9));
+    EXPECT_EQ(world(probes.moves[0].points[1]), Vec3(100, 1, 9));
     EXPECT_EQ(probes.touches[0].approach, Vec3(-0.6, 0, 0.8));
     EXPECT_EQ(probes.touches[0].tangent, Vec3(-1, 0, 0));
     EXPECT_EQ(probes.touches[0].left_normal, Vec3::UnitZ());
@@ -179,7 +178,7 @@ TEST(Probes, AtAnotherOrigin_KeepTheirWorldPositions) {
     const ProbePlan& probes = *moved.get<ProbePlan>();
     EXPECT_EQ(probes.touches[0].start, Vec3(-90, 70, 30));
     EXPECT_EQ(probes.touches[0].centre, Vec3(-99, 52, 3));
-    EXPECT_EQ(probes.path[2], Vec3(-90, 70, 30));
+    EXPECT_EQ(probes.moves[0].points[2], Vec3(-90, 70, 30));
     EXPECT_EQ(probes.touches[0].approach, Vec3(0, 0.6, 0.8));
     EXPECT_EQ(positions_of(moved).size(), 3u * 2 + 5) << "points, starts, centres and the path";
 }
@@ -199,9 +198,6 @@ TEST(ProbesRefuse, WhatIsNotUsable) {
     ProbePlan probes = plan();
     probes.moves[0].touch = 2;
     EXPECT_THAT(refusal(probes), HasSubstr("move 0 names touch 2; there are 2"));
-    probes = plan();
-    probes.moves[1].end = 6;
-    EXPECT_THAT(refusal(probes), HasSubstr("move 1 names the points 3 to 6; there are 5"));
 }
 
 TEST(ProbesRefuse, BrokenJson) {
@@ -210,29 +206,31 @@ TEST(ProbesRefuse, BrokenJson) {
         change(json);
         return error_of([&] { plan_of(json); }).sentence();
     };
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0] = 1; }), HasSubstr("touch 0 is not an object"));
+    const auto touch_refusal = [&](const char* member, const Json& value) {
+        return refusal([&](Json& j) { j["touches"][0][member] = value; });
+    };
+    EXPECT_THAT(refusal([](Json& j) { j["touches"][0] = 1; }), HasSubstr("'touches[0]' is not an object"));
+    EXPECT_THAT(touch_refusal("tangent", {1, 1, 0}), HasSubstr("'touches[0].tangent' has the length 1.41421"));
+    EXPECT_THAT(touch_refusal("approach", nullptr), HasSubstr("'touches[0].approach' is not a list of 3"));
     EXPECT_THAT(refusal([](Json& j) {
-                    j["touches"][0]["tangent"] = {1, 1, 0};
+                    j["touches"][1]["start"] = Json{0, 0, 0};
                 }),
-                HasSubstr("touch 0: 'tangent' has the length 1.41421"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["approach"] = nullptr; }), HasSubstr("touch 0: 'approach'"));
-    EXPECT_THAT(refusal([](Json& j) {
-                    j["touches"][1]["start"] = {0, 0, 0};
-                }),
-                HasSubstr("touch 1 is not made (too-narrow), but has 'start'"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["reason"] = "tired"; }),
-                HasSubstr("unknown reason 'tired'; expected one of none, concave"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["contact"] = "x"; }), HasSubstr("unknown contact 'x'"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["phi"] = "x"; }), HasSubstr("'phi' is not a number or null"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["touch"] = -1; }), HasSubstr("'touch' is not a whole number"));
-    EXPECT_THAT(refusal([](Json& j) { j["touches"][0]["assumed"] = 1; }), HasSubstr("'assumed' is not true or false"));
+                HasSubstr("'touches[1].start' is not null"));
+    EXPECT_THAT(touch_refusal("reason", "tired"),
+                AllOf(HasSubstr("'touches[0].reason' is 'tired'"), HasSubstr("none, concave")));
+    EXPECT_THAT(touch_refusal("contact", "x"), HasSubstr("'touches[0].contact' is 'x'"));
+    EXPECT_THAT(touch_refusal("phi", "x"), HasSubstr("'touches[0].phi' is not a number"));
+    EXPECT_THAT(touch_refusal("touch", -1), HasSubstr("'touches[0].touch' is not a whole number"));
+    EXPECT_THAT(touch_refusal("assumed", 1), HasSubstr("'touches[0].assumed' is not true or false"));
+    EXPECT_THAT(touch_refusal("contact-distance", -1), HasSubstr("'touches[0].contact-distance' is not a length"));
     EXPECT_THAT(refusal([](Json& j) { j["radius"] = -1; }), HasSubstr("'radius' is not a length"));
-    EXPECT_THAT(refusal([](Json& j) { j.erase("radius"); }), HasSubstr("'radius' is not a length"));
+    EXPECT_THAT(refusal([](Json& j) { j.erase("radius"); }), HasSubstr("'radius' is missing"));
     EXPECT_THAT(refusal([](Json& j) { j["machine-axis"] = {0, 0, 2}; }), HasSubstr("'machine-axis' has the length 2"));
     EXPECT_THAT(refusal([](Json& j) { j["moves"][0]["touch"] = 2u; }), HasSubstr("move 0 names touch 2; there are 2"));
-    EXPECT_THAT(refusal([](Json& j) { j["moves"][0]["type"] = "jump"; }), HasSubstr("unknown type 'jump'"));
-    EXPECT_THAT(refusal([](Json& j) { j["moves"][1] = 1; }), HasSubstr("move 1 is not an object"));
-    EXPECT_THAT(refusal([](Json& j) { j["extra"] = 1; }), HasSubstr("unknown key 'extra'"));
+    EXPECT_THAT(refusal([](Json& j) { j["moves"][0]["type"] = "jump"; }), HasSubstr("'moves[0].type' is 'jump'"));
+    EXPECT_THAT(refusal([](Json& j) { j["moves"][1] = 1; }), HasSubstr("'moves[1]' is not an object"));
+    EXPECT_THAT(refusal([](Json& j) { j["touch"] = 1; }),
+                AllOf(HasSubstr("'touch' is unknown"), HasSubstr("did you mean 'touches'")));
 }
 
 }  // namespace

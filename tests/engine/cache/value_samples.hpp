@@ -90,11 +90,13 @@ inline ProbePlan probes() {
     plan.touches[0].position = Vec3(-0.0, 0.1 + 0.2, 1e-310);
     plan.touches[0].start = Vec3(1, 2, 3);
     plan.touches[0].assumed = true;
-    plan.touches[0].range = {-0.5, 0.1 + 0.2};
+    plan.touches[0].phi_min = -0.5;
+    plan.touches[0].phi_max = 0.1 + 0.2;
     plan.touches[1].touch = 7;
     plan.touches[1].reason = ProbeReason::obstructed;
-    plan.moves = {{ProbeMoveType::retract, 1, 0, 2}};
-    plan.path = {Vec3(4, 5, 6), Vec3(7, -0.0, 9)};
+    plan.moves = {{ProbeMoveType::retract, 1, {Vec3(4, 5, 6), Vec3(7, -0.0, 9)}},
+                  {ProbeMoveType::approach, 0, {}},
+                  {ProbeMoveType::clearance, 0, {Vec3(1, 2, 3)}}};
     plan.radius = 0.1 + 0.2;
     plan.machine_axis = Vec3(0, -0.0, -1);
     return plan;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
@@ -15,32 +14,44 @@ struct Markers {
     Buffer<Vec3> positions;
     std::vector<std::string> names;
 };
+constexpr auto fields(const Markers*) {
+    return std::tuple{field("frame", &Markers::frame), field("positions", &Markers::positions).means(Meaning::position),
+                      field("names", &Markers::names)};
+}
+
+struct Marker {
+    std::string name;
+    Vec3 at;
+};
+constexpr auto fields(const Marker*) { return std::tuple{field("name", &Marker::name), field("at", &Marker::at)}; }
+
+struct MarkersDocument {
+    Frame frame;
+    std::vector<Marker> markers;
+};
+constexpr auto fields(const MarkersDocument*) {
+    return std::tuple{field("frame", &MarkersDocument::frame).flat(), field("markers", &MarkersDocument::markers)};
+}
 
 template <>
-struct KindTraits<Markers> : FromPositions<Markers> {
+struct KindTraits<Markers> : FromPositions<Markers>, HasDocument<Markers, MarkersDocument> {
     static constexpr std::string_view name = "markers";
-    static void visit(FieldVisitor& visitor, Markers& markers) {
-        visitor.frame("frame", markers.frame);
-        visitor.positions("positions", markers.positions);
-        visitor.small("names", markers.names);
-    }
     static std::vector<PropertySpec> property_specs() { return {{"markers", Unit::count, "Markers."}}; }
     static std::vector<std::optional<double>> property_values(const Markers& markers) { return {markers.names.size()}; }
     static void require_usable(const Markers&) {}
     static constexpr std::string_view json_member = "markers";
-    static void to_json(const Markers& markers, Json& document) {
-        document = {{"scanmill", 1}, {"unit", unit_json(markers.frame.unit)}, {"markers", Json::array()}};
+    static MarkersDocument document(const Markers& markers) {
+        MarkersDocument document{markers.frame, {}};
         for (std::size_t i = 0; i < markers.names.size(); ++i)
-            document["markers"].push_back(
-                {{"name", markers.names[i]}, {"at", json_of(markers.frame.origin + markers.positions[i])}});
+            document.markers.push_back({markers.names[i], markers.positions[i]});
+        return document;
     }
-    static Markers from_json(const Json& document, const OnWarning&) {
-        Markers markers;
-        markers.frame.unit = unit_member(document);
+    static Markers object(const MarkersDocument& document) {
+        Markers markers{document.frame, {}, {}};
         Array<Vec3> positions;
-        for (const Json& marker : list_member(document, "markers", "the document")) {
-            markers.names.push_back(text_member(marker, "name", "a marker"));
-            positions.push_back(vector_of(member(marker, "at"), "a marker's 'at'"));
+        for (const Marker& marker : document.markers) {
+            markers.names.push_back(marker.name);
+            positions.push_back(marker.at);
         }
         markers.positions = std::move(positions);
         return markers;

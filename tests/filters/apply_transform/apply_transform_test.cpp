@@ -116,15 +116,14 @@ TEST(ApplyTransform, Probes_MoveWithTheirDirections) {
     touch.start = Vec3(5, 2, 3);
     touch.phi = 0.25;
     plan.touches = {touch};
-    plan.moves = {{ProbeMoveType::approach, 0, 0, 2}};
-    plan.path = {{5, 2, 3}, {2, 2, 3}};
+    plan.moves = {{ProbeMoveType::approach, 0, {{5, 2, 3}, {2, 2, 3}}}};
     plan.machine_axis = Vec3(1, 0, 0);
     plan.radius = 2;
     const Value value = applied(in_frame(plan, "scanner"), to_machine());
     const auto moved = value.get<ProbePlan>();
     EXPECT_EQ(moved->frame.origin + moved->touches[0].position, Vec3(8, 1, 3));
     EXPECT_EQ(moved->frame.origin + moved->touches[0].start, Vec3(8, 5, 3));
-    EXPECT_EQ(moved->frame.origin + moved->path[1], Vec3(8, 2, 3));
+    EXPECT_EQ(moved->frame.origin + moved->moves[0].points[1], Vec3(8, 2, 3));
     EXPECT_EQ(moved->touches[0].approach, Vec3(0, 1, 0));
     EXPECT_EQ(moved->touches[0].tangent, Vec3(0, 1, 0));
     EXPECT_EQ(moved->machine_axis, Vec3(0, 1, 0));

@@ -167,12 +167,12 @@ TEST(ProbePlannerMoves, KeepTheirClearance_AndLeadFromTouchToTouch) {
     ASSERT_EQ(plan.moves.size(), 3 * made);
     double travel = 0;
     std::set<u32> touched;
-    Vec3 at = plan.path[0];
+    Vec3 at = plan.moves[0].points[0];
     int detours = 0;
     for (std::size_t i = 0; i < plan.moves.size(); ++i) {
         const ProbeMove& move = plan.moves[i];
         const ProbeTouch& touch = plan.touches[move.touch];
-        const auto path = plan.path.span().subspan(move.begin, move.end - move.begin);
+        const Array<Vec3>& path = move.points;
         EXPECT_EQ(static_cast<std::size_t>(move.type), i % 3);
         EXPECT_EQ(touch.order, i / 3);
         EXPECT_EQ(path.front(), at);
@@ -211,8 +211,8 @@ TEST(ProbePlannerMoves, AWallBetweenTwoParts_ForcesADetourOverThePlane) {
         const Planned result = planned(lines_of(parts), mesh, params);
         int across = 0;
         for (const ProbeMove& move : result.plan.moves) {
-            const auto path = result.plan.path.span().subspan(move.begin, move.end - move.begin);
-            if (move.begin == 0 || (path.front().x() < 20) == (path.back().x() < 20)) continue;
+            const Array<Vec3>& path = move.points;
+            if (&move == &result.plan.moves.front() || (path.front().x() < 20) == (path.back().x() < 20)) continue;
             ++across;
             ASSERT_EQ(path.size(), points) << low << ' ' << height;
             if (points == 2) continue;

@@ -9,7 +9,6 @@
 #include "filters/probe_planner/cases.hpp"
 #include "probe_planner/contact_range.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/kinds/probes.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill::test {
@@ -57,7 +56,7 @@ TEST(ProbePlanner, Cube_IsTouchedAlongTheBisectorsOfItsFaces) {
         const double along = std::abs(touch.tangent.dot(touch.position));
         EXPECT_NEAR(std::fmod(along, 2.5), 1.25, 1e-12);
         EXPECT_NEAR(touch.interior_angle, pi / 2, 1e-12);
-        EXPECT_NEAR(touch.range.max, std::acos(0.1) - pi / 4, 1e-12);
+        EXPECT_NEAR(touch.phi_max, std::acos(0.1) - pi / 4, 1e-12);
         const Vec3 outwards = (touch.left_normal + touch.right_normal).normalized();
         EXPECT_GT(outwards.dot(touch.position - Vec3::Constant(5)), 0);
         EXPECT_EQ(touch.reason != ProbeReason::none, outwards.z() < -0.1) << touch.position.transpose();
@@ -122,7 +121,7 @@ TEST(ProbePlanner, ConcaveEdge_IsReported) {
     for (const ProbeTouch& touch : result.plan.touches)
         if (touch.reason == ProbeReason::concave) {
             EXPECT_NEAR(touch.interior_angle, 1.5 * pi, 1e-9);
-            EXPECT_TRUE(std::isnan(touch.range.max));
+            EXPECT_TRUE(std::isnan(touch.phi_max));
         }
 }
 
@@ -290,15 +289,15 @@ TEST(ProbePlanner, BeyondABorder_ARightAngleIsAssumed) {
         EXPECT_EQ(touch.interior_angle, pi / 2);
         EXPECT_NEAR(touch.left_normal.z(), 1, 1e-12);
         EXPECT_GT(touch.right_normal.dot(touch.position - Vec3(8, 8, 10)), 0) << "away from the top";
-        EXPECT_NEAR(touch.range.max / degree, 30.522, 0.0005);
-        EXPECT_NEAR(touch.known_range.min / degree, -45, 1e-9);
-        EXPECT_NEAR(touch.known_range.max / degree, 30.964, 0.0005);
+        EXPECT_NEAR(touch.phi_max / degree, 30.522, 0.0005);
+        EXPECT_NEAR(touch.phi_known_min / degree, -45, 1e-9);
+        EXPECT_NEAR(touch.phi_known_max / degree, 30.964, 0.0005);
     }
     // An error of 1.94 leaves nothing by equation 5.7; the known side leaves -45 to 0.87 degrees.
     for (const ProbeTouch& touch : planned(top, probe_of(2, 1.94, 4)).plan.touches) {
-        EXPECT_TRUE(std::isnan(touch.range.max));
+        EXPECT_TRUE(std::isnan(touch.phi_max));
         EXPECT_EQ(touch.reason, ProbeReason::none);
-        EXPECT_NEAR(touch.known_range.max / degree, 0.87, 0.005);
+        EXPECT_NEAR(touch.phi_known_max / degree, 0.87, 0.005);
         EXPECT_NEAR(touch.phi / degree, (-45 + 0.87) / 2, 0.005);
         EXPECT_EQ(touch.false_share, 0);
         EXPECT_GT(touch.approach.dot(touch.right_normal), touch.approach.dot(touch.left_normal));
@@ -361,8 +360,8 @@ TEST(ProbePlanner, CircularEdge_HasOneRangeAndDirectionsThatRotateWithThePoint) 
     const double alpha = 2 * std::atan(0.6);
     for (const ProbeTouch& touch : result.plan.touches) {
         EXPECT_NEAR(touch.interior_angle, alpha, 1e-3);
-        EXPECT_NEAR(touch.range.max, std::acos(0.04) - alpha / 2, 1e-3);
-        EXPECT_NEAR(touch.range.max, result.plan.touches[0].range.max, 1e-4);
+        EXPECT_NEAR(touch.phi_max, std::acos(0.04) - alpha / 2, 1e-3);
+        EXPECT_NEAR(touch.phi_max, result.plan.touches[0].phi_max, 1e-4);
         EXPECT_NEAR(touch.approach.dot(touch.tangent), 0, 1e-12);
         const Vec3 outwards = Vec3(touch.position.x(), touch.position.y(), 0).normalized();
         EXPECT_NEAR(touch.approach.dot(outwards), 1, 2e-4) << "within half of the segments' 2 degrees";

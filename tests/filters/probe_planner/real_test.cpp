@@ -74,7 +74,7 @@ TEST(ProbePlannerReal, BlockWithFiveHoles_EveryRimIsPlannedWithinTheError) {
     EXPECT_GT(result.edge_roughness, 0.05);
     for (const ProbeTouch& touch : result.plan.touches) {
         EXPECT_EQ(touch.interior_angle, pi / 2);
-        EXPECT_NEAR(touch.range.max / degree, 15, 1e-9);
+        EXPECT_NEAR(touch.phi_max / degree, 15, 1e-9);
         EXPECT_EQ(touch.contact, ProbeContact::edge);
         const Vec3 p = touch.position + result.plan.frame.origin;
         const Rim& rim = rim_of(p);

@@ -1,76 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/writing.hpp"
-#include "scanmill/kinds/probes.hpp"
 
 namespace scanmill {
 
 namespace {
 
-constexpr std::string_view header =
-    "touch,feature,x,y,z,i,j,k,order,reason,assumed,phi,phi-min,phi-max,phi-known-min,phi-known-max,interior-angle,"
-    "start-x,start-y,start-z,centre-x,centre-y,centre-z,tangent-i,tangent-j,tangent-k,left-normal-i,left-normal-j,"
-    "left-normal-k,right-normal-i,right-normal-j,right-normal-k,false-share,contact,contact-distance\n";
+/// The fields of a touch in the order of the columns; others follow.
+constexpr std::array<std::string_view, 21> order{
+    "touch",  "feature", "point",       "approach",      "order",         "reason",         "assumed",
+    "phi",    "phi-min", "phi-max",     "phi-known-min", "phi-known-max", "interior-angle", "start",
+    "centre", "tangent", "left-normal", "right-normal",  "false-share",   "contact",        "contact-distance"};
 
-/// Writes fields of one row; the first has no comma before it.
-class Row {
-public:
-    explicit Row(OutputBuffer& out) : out_(out) {}
-    void index(u32 number) {
-        separate();
-        out_.number(number);
-    }
-    void number(double number) {
-        separate();
-        if (std::isfinite(number)) out_.number(number);
-    }
-    void degrees(double radians) { number(radians * 180 / std::numbers::pi); }
-    void word(std::string_view word) {
-        separate();
-        out_.text(word);
-    }
-    void vector(const Vec3& vector) {
-        for (const double component : {vector.x(), vector.y(), vector.z()}) number(component);
-    }
-    void nothing(int fields) {
-        for (int field = 0; field < fields; ++field) separate();
-    }
-
-private:
-    void separate() {
-        if (!is_first_) out_.text(",");
-        is_first_ = false;
-    }
-    OutputBuffer& out_;
-    bool is_first_ = true;
+/// A field's columns: their names, or the texts of one row.
+struct Cells {
+    std::string_view field;
+    std::vector<std::string> texts;
 };
 
-void write_touch(const ProbePlan& plan, const ProbeTouch& touch, OutputBuffer& out) {
-    const bool is_made = touch.reason == ProbeReason::none;
-    Row row(out);
-    row.index(touch.touch);
-    row.index(touch.feature);
-    row.vector(world(plan.frame, touch.position));
-    is_made ? row.vector(touch.approach) : row.nothing(3);
-    touch.order == ProbeTouch::no_order ? row.nothing(1) : row.index(touch.order);
-    row.word(name_of(touch.reason));
-    row.word(touch.assumed ? "yes" : "no");
-    for (const double angle : {touch.phi, touch.range.min, touch.range.max, touch.known_range.min,
-                               touch.known_range.max, touch.interior_angle})
-        row.degrees(angle);
-    if (is_made) {
-        row.vector(world(plan.frame, touch.start));
-        row.vector(world(plan.frame, touch.centre));
+/// One column for a number; three for a vector, without the field's name for the point and the approach.
+template <class Field>
+Cells names_of_columns(const Field& field) {
+    const std::string_view name = field.name;
+    if constexpr (!std::same_as<typename Field::Member, Vec3>) {
+        return {name, {std::string(name)}};
     } else {
-        row.nothing(6);
+        Cells cells{name, {}};
+        const std::string prefix = name == "point" || name == "approach" ? "" : std::string(name) + "-";
+        for (const char axis : std::string_view(field.meaning == Meaning::position ? "xyz" : "ijk"))
+            cells.texts.push_back(prefix + axis);
+        return cells;
     }
-    for (const Vec3& direction : {touch.tangent, touch.left_normal, touch.right_normal}) row.vector(direction);
-    row.number(touch.false_share);
-    row.word(name_of(touch.contact));
-    row.number(touch.contact_distance);
+}
+
+std::string text_of(double number) { return std::isfinite(number) ? number_text(number) : ""; }
+
+template <class Field>
+Cells cells_of(const Frame& frame, const ProbeTouch& touch, const Field& field) {
+    using Member = typename Field::Member;
+    const Member& member = touch.*field.member;
+    const bool applies = !field.applies || field.applies(touch);
+    if constexpr (std::same_as<Member, Vec3>) {
+        if (!applies) return {field.name, {"", "", ""}};
+        const Vec3 vector = field.meaning == Meaning::position ? world(frame, member) : member;
+        return {field.name, {text_of(vector.x()), text_of(vector.y()), text_of(vector.z())}};
+    } else if constexpr (std::same_as<Member, double>) {
+        const bool is_angle = field.unit_text == std::string_view("rad");
+        return {field.name, {text_of(is_angle ? member * 180 / std::numbers::pi : member)}};  // in degrees
+    } else if constexpr (std::same_as<Member, bool>) {
+        return {field.name, {member ? "yes" : "no"}};
+    } else if constexpr (Named<Member>) {
+        return {field.name, {std::string(name_of(member))}};
+    } else {
+        const bool is_undefined = field.is_nullable && member == std::numeric_limits<Member>::max();
+        return {field.name, {is_undefined ? "" : std::to_string(member)}};
+    }
+}
+
+/// Writes a line of what `cells` gives for each field.
+void write_line(OutputBuffer& out, auto&& cells) {
+    std::vector<Cells> all;
+    for_each_field<ProbeTouch>([&](const auto& field) { all.push_back(cells(field)); });
+    std::ranges::stable_sort(all, {}, [](const Cells& one) { return std::ranges::find(order, one.field); });
+    bool is_first = true;
+    for (const Cells& one : all)
+        for (const std::string& text : one.texts) {
+            if (!std::exchange(is_first, false)) out.text(",");
+            out.text(text);
+        }
     out.text("\n");
 }
 
@@ -78,8 +79,9 @@ void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const ProbePlan& plan = *value.get<ProbePlan>();
     warn_lost_precision(plan.frame, positions_of(value).span(), false, "CSV", options);
     out.text(comment_lines(plan.frame));
-    out.text(header);
-    for (const ProbeTouch& touch : plan.touches) write_touch(plan, touch, out);
+    write_line(out, [](const auto& field) { return names_of_columns(field); });
+    for (const ProbeTouch& touch : plan.touches)
+        write_line(out, [&](const auto& field) { return cells_of(plan.frame, touch, field); });
 }
 
 }  // namespace
