@@ -67,6 +67,7 @@ function(scanmill_add_filter folder)
   add_dependencies(scanmill-${name} Scanmill::manifest)
 
   if(NOT FILTER_NO_INSTALL)
+    set_property(GLOBAL APPEND PROPERTY SCANMILL_MODULES scanmill-${name})
     install(TARGETS scanmill-${name} LIBRARY DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
     install(FILES ${SCANMILL_PLUGIN_OUTPUT_DIRECTORY}/scanmill-${name}.json DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
   endif()

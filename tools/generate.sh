@@ -26,7 +26,7 @@ trap 'rm -rf "$made"' EXIT
 "$program" schema -o "$made/schemas"
 "$program" docs -o "$made/docs/filters"
 if [ "${2:-}" = check ]; then
-    if ! diff -ru schemas "$made/schemas" || ! diff -ru docs/filters "$made/docs/filters"; then
+    if ! diff -ru --exclude=workflow.schema.json schemas "$made/schemas" || ! diff -ru docs/filters "$made/docs/filters"; then
         echo "error: schemas/ or docs/filters/ are not what the filters declare; run: make generate" >&2
         exit 1
     fi
