@@ -74,10 +74,11 @@ struct PoissonResult {
 /// dropped.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. They depend on
-/// the order of the points. PCL cannot be cancelled: the call returns after its part. It prints warnings on stderr,
-/// keeps the octree's memory for the next call, and leaks 4^(depth + 2) bytes. Cost: time and memory grow with the
-/// surface's area in cells, fourfold with every `depth` until cells are as small as the distance between points.
-/// Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`, `cracks`, `loops`, `cell`.
+/// the order of the points. PCL cannot be cancelled: the call returns after its part. It prints messages on stdout and
+/// stderr, keeps the octree's memory for the next call, and leaks 4^(depth + 2) bytes.
+/// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as
+/// the distance between points. Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`,
+/// `cracks`, `loops`, `cell`.
 PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Context& context);
 
 }  // namespace scanmill
