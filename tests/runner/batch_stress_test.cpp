@@ -2,6 +2,8 @@
 // Random batches: however many workers there are, whatever the cache keeps, has lost or holds damaged, the same files
 // come out, with the same descriptions, and the same cells fail for the same reasons.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <random>

@@ -6,7 +6,7 @@
 /// the error on adds one frame, innermost first: "in step 'delaunay' (object.yaml:14:5)", "on scan 'plate.ply'".
 /// Broken invariants of the program are asserts, never Errors.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <exception>
 #include <string>

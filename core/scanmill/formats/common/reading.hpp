@@ -2,7 +2,7 @@
 #pragma once
 /// For all readers: warnings, the file's name in messages, declarations in comments, and the finished LoadedFile.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <map>
 

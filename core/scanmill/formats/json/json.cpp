@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/writing.hpp"
 #include "scanmill/kinds/document.hpp"
