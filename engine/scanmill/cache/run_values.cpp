@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
 
@@ -19,7 +20,7 @@ void RunValues::put(const ValueSlot& slot, const EncodedValue& value) {
     try {
         value.write(file_of(slot));
     } catch (const Error& error) {
-        throw Error("a value of {} bytes cannot be passed on: {}", value.size(), error.sentence())
+        throw Error("a value of {} cannot be passed on: {}", byte_size_text(value.size()), error.sentence())
             .hint("set TMPDIR to a folder with room");
     }
 }

@@ -23,9 +23,9 @@ Number smaller_limit(Number a, Number b) {
 
 /// Decides in which order nodes run and outputs are written, for any number of workers.
 ///
-/// Of the tasks that can start, an idle worker takes the first in the order of the graph, so scans are completed one
-/// after the other and few values exist at a time. A value is removed after the last task that takes it. Values that
-/// were removed from the cache meanwhile are computed again.
+/// An idle worker takes the first task, in the order of the graph, that can start. So scans are completed one after the
+/// other, and few values exist at a time. A value is removed after the last task that takes it. Values that were
+/// removed from the cache meanwhile are computed again.
 class Scheduler {
 public:
     Scheduler(FilterLibrary& library, const RunGraph& graph, Workers& workers, const RunSettings& settings,

@@ -416,7 +416,8 @@ void Workbench::store_values(const Job& job, const JobCaching& caching, const Ou
         try {
             values_.put({job.node, port}, encoded);
         } catch (const Error& error) {
-            throw JobFailure{Cause::output, error};
+            if (work) throw JobFailure{Cause::output, error};
+            // A file can be read again.
         }
     }
 }

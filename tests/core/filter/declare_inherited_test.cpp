@@ -8,11 +8,11 @@
 namespace scanmill::test {
 namespace {
 
-enum class Choice { nearest, random };
+enum class InheritedRule { nearest, random };
 
 struct AlgorithmParams {
     int count = 3;
-    Choice rule = Choice::nearest;
+    InheritedRule rule = InheritedRule::nearest;
 };
 
 struct FilterParams : AlgorithmParams {
@@ -25,8 +25,8 @@ TEST(DeclareInherited, Members_HaveTheirDefaultsAndTakeValues) {
     const FilterDeclaration declared =
         Declare<P>("inheriting", 1)
             .param("count", &P::count, "help")
-            .choice("rule", &P::rule, {{"nearest", Choice::nearest, "help"}, {"random", Choice::random, "help"}},
-                    "help")
+            .choice("rule", &P::rule,
+                    {{"nearest", InheritedRule::nearest, "help"}, {"random", InheritedRule::random, "help"}}, "help")
             .param("file", &P::file, "help")
             .run([&](const Inputs&, const P& params, Context&) { return seen = params, Outputs(); });
     EXPECT_EQ(declared.spec.parameter("count")->default_value, ParameterValue(ParameterScalar(std::int64_t(3))));
@@ -38,7 +38,7 @@ TEST(DeclareInherited, Members_HaveTheirDefaultsAndTakeValues) {
                    {"file", ParameterScalar(std::string("b"))}}},
                  context);
     EXPECT_EQ(seen.count, 8);
-    EXPECT_EQ(seen.rule, Choice::random);
+    EXPECT_EQ(seen.rule, InheritedRule::random);
     EXPECT_EQ(seen.file, "b");
 }
 

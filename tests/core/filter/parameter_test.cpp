@@ -127,10 +127,10 @@ TEST(CanonicalText, OtherMeaning_HasAnotherText) {
 }
 
 TEST(CanonicalText, TextWithACommaInAList_IsNotTwoTexts) {
-    using Texts = std::vector<ParameterScalar>;
-    EXPECT_NE(canonical_text(Texts{std::string("a, b")}), canonical_text(Texts{std::string("a"), std::string("b")}));
-    EXPECT_NE(canonical_text(Texts{std::string("")}), canonical_text(Texts{}));
-    EXPECT_NE(canonical_text(Texts{std::string("a, 1:b")}), canonical_text(Texts{std::string("a"), std::string("b")}));
+    using Items = std::vector<ParameterScalar>;
+    EXPECT_NE(canonical_text(Items{std::string("a, b")}), canonical_text(Items{std::string("a"), std::string("b")}));
+    EXPECT_NE(canonical_text(Items{std::string("")}), canonical_text(Items{}));
+    EXPECT_NE(canonical_text(Items{std::string("a, 1:b")}), canonical_text(Items{std::string("a"), std::string("b")}));
 }
 
 }  // namespace

@@ -19,6 +19,9 @@ namespace scanmill::test {
 
 namespace fs = std::filesystem;
 
+/// Three rows of positions.
+inline const std::string right_triangle = "0 0 0\n1 0 0\n0 1 0\n";
+
 /// Collects warnings through the options.
 struct Warnings {
     std::vector<std::string> sentences;

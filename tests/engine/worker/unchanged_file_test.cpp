@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "scanmill/base/hash.hpp"
 #include "scanmill/plugin/module.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
