@@ -25,8 +25,10 @@ struct Step {
 
 /// Every filter at least once, on small noisy scans.
 const std::vector<Step> steps{
-    {"plate", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.1 u], views: [0, 0, 1], noise: 0.002 u"},
-    {"machine", "virtual-scan", "shape: box, size: [4 u, 3 u, 0.2 u], views: [0, 0, 1], noise: 0.001 u"},
+    {"plate", "virtual-scan",
+     "shape: box, size: [4 u, 3 u, 0.1 u], views: [0, 0, 1], resolution: 0.05 u, noise: 0.002 u"},
+    {"machine", "virtual-scan",
+     "shape: box, size: [4 u, 3 u, 0.2 u], views: [0, 0, 1], resolution: 0.05 u, noise: 0.001 u"},
     {"scan", "virtual-scan", "shape: l-block, resolution: 0.05 u, noise: 0.002 u, outliers: 1 %"},
     {"other-scan", "virtual-scan", "shape: l-block, views: [5], resolution: 0.07 u, noise: 0.004 u"},
     {"merged", "merge", "within: 0.01 u", "points: [scan, other-scan]"},
