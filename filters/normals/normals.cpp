@@ -34,7 +34,7 @@ constexpr double doubtful_variation = 0.1;  // a hemisphere has 1/9, a ball 1/3
 constexpr std::size_t chunk = 1 << 12;
 
 /// The normals of the positions of a tree, and which of them are neighbours.
-struct Field {
+struct NormalField {
     std::size_t each = 0;
     /// The nearest of position i are [i each, (i + 1) each).
     Array<u32> nearest;
@@ -45,9 +45,9 @@ struct Field {
     std::span<const u32> of(std::size_t i) const { return std::span(nearest).subspan(i * each, each); }
 };
 
-Field estimated(const PointTree& tree, const NormalsParams& params, Context& context) {
+NormalField estimated(const PointTree& tree, const NormalsParams& params, Context& context) {
     const std::span<const Vec3> positions = tree.positions();
-    Field field;
+    NormalField field;
     field.each = std::min<std::size_t>(params.neighbours, positions.size() - 1);
     field.nearest.resize(positions.size() * field.each);
     field.directions.resize(positions.size());
@@ -77,7 +77,7 @@ Field estimated(const PointTree& tree, const NormalsParams& params, Context& con
 }
 
 /// By position: 1 or -1 where the direction to the scanner decides, else 0.
-std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTree& tree, const Field& field,
+std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTree& tree, const NormalField& field,
                                          const NormalsParams& params, const Column* approach) {
     const std::span<const u32> index_of_row = tree.index_of_row();
     std::vector<signed char> sides(field.directions.size(), 0);
@@ -101,7 +101,7 @@ std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTre
 /// The neighbours of every position in both directions.
 class Graph {
 public:
-    explicit Graph(const Field& field)
+    explicit Graph(const NormalField& field)
         : field_(field),
           reverse_(field.directions.size(), [&](auto&& add) {
               for (u32 i = 0; i < field.directions.size(); ++i)
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    const Field& field_;
+    const NormalField& field_;
     Lists<> reverse_;
 };
 
@@ -131,7 +131,7 @@ struct Guessed {
 };
 
 /// Gives the highest position of every component without a side its side. `count`: of all components.
-Guessed seed_components(std::span<const Vec3> positions, const Field& field, DisjointSets& components,
+Guessed seed_components(std::span<const Vec3> positions, const NormalField& field, DisjointSets& components,
                         std::vector<signed char>& sides, std::size_t& count) {
     struct Component {
         std::size_t size = 0;
@@ -169,7 +169,7 @@ Guessed seed_components(std::span<const Vec3> positions, const Field& field, Dis
 }
 
 /// Prim's algorithm from all positions that have a side.
-void spread(const Field& field, const Graph& graph, std::vector<signed char>& sides, Context& context) {
+void spread(const NormalField& field, const Graph& graph, std::vector<signed char>& sides, Context& context) {
     struct Link {
         double weight;
         u32 to, from;
@@ -214,7 +214,7 @@ void spread(const Field& field, const Graph& graph, std::vector<signed char>& si
 }
 
 /// Whether the normals of most neighbours are on the other side.
-std::vector<u8> doubtful_positions(const Field& field, const std::vector<signed char>& sides, bool oriented,
+std::vector<u8> doubtful_positions(const NormalField& field, const std::vector<signed char>& sides, bool oriented,
                                    Context& context) {
     std::vector<u8> doubtful(field.undetermined);
     if (!oriented) return doubtful;
@@ -230,7 +230,7 @@ std::vector<u8> doubtful_positions(const Field& field, const std::vector<signed 
     return doubtful;
 }
 
-PointCloud with_normals(const PointCloud& cloud, std::span<const u32> index_of_row, const Field& field,
+PointCloud with_normals(const PointCloud& cloud, std::span<const u32> index_of_row, const NormalField& field,
                         const std::vector<signed char>& sides, Context& context) {
     Array<float> values(3 * cloud.size());
     for (std::size_t row = 0; row < cloud.size(); ++row) {
@@ -323,7 +323,7 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
         throw Error("the cloud has {}; normals need at least 3",
                     count_text(positions.size(), "distinct position", "distinct positions"))
             .hint("`scanmill info` shows what a file contains");
-    const Field field = estimated(tree, params, context);
+    const NormalField field = estimated(tree, params, context);
     if (std::ranges::all_of(field.undetermined, [](u8 it) { return it == 1; }))
         throw Error("the neighbours of each of the {} positions lie on one line; a normal needs a plane",
                     positions.size())

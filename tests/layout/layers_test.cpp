@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 
 /// In each library a folder may include itself and those before it; engine may include all of core. Geometry may
 /// include what comes before kinds, and neither core nor engine may include geometry.
-const std::vector<std::string> layers{"base",     "io",     "record",  "data",    "geometry", "kinds",
-                                      "formats",  "filter", "plugin",  // core
-                                      "workflow", "plan",   "gate",    "batch",   "graph",    "cache",
-                                      "worker",   "run",    "records", "compare", "session",  "describe"};  // engine
+const std::vector<std::string> layers{"base",     "io",     "record",  "data",    "geometry", "kinds",   "formats",
+                                      "filter",   "plugin",  // core
+                                      "workflow", "plan",   "gate",    "batch",   "graph",    "cache",   "worker",
+                                      "run",      "report", "records", "compare", "session",  "describe"};  // engine
 const std::vector<std::string> geometry_layers{"spatial", "fit", "mesh", "tets", "distance", "growing", "patches"};
 
 struct Include {

@@ -18,7 +18,7 @@ TEST(ReproducingCommand, OfABatch_NamesScanAndVariant) {
               "scanmill batch jobs/nightly.yaml --scan scans/a.ply --only default -o reproduced");
     now.start.seed = 7;
     add_cell(now, "jobs/it's \"b\"\n.ply").workflow = "other";
-    now.cells[1].outcome = "failed";
+    now.cells[1].outcome = Outcome::failed;
     const Comparison comparison = compare(now, nullptr, reproducing_command);
     EXPECT_EQ(comparison.cells[1].command,
               "scanmill batch jobs/nightly.yaml --scan $'it\\'s \"b\"\\n.ply' --workflow other --seed 7 --only default "

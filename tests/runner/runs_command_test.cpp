@@ -84,7 +84,9 @@ TEST_F(RunsCommand, StepsAndCells_NameTheirVariants) {
     for (const json& cell : run["cells"])
         for (const json& node : cell["steps"]) ++uses[node.get<std::size_t>()];
     for (const json& step : run["steps"])
-        if (step["scan"] == "a.xyz") EXPECT_EQ(uses[step["node"]], step["step"] == "last" ? 1u : 4u) << step;
+        if (step["scan"] == "a.xyz") {
+            EXPECT_EQ(uses[step["node"]], step["step"] == "last" ? 1u : 4u) << step;
+        }
     const std::string text = scanmill({"runs", "out", "show", "1"}).out;
     EXPECT_THAT(text, AllOf(HasSubstr("bin-size=0.2u, bin-size=0.3u, bin-size=0.4u and 1 more"),
                             HasSubstr("missing.xyz [bin-size=0.2u, bin-size=0.3u, bin-size=0.4u and 1 more]: ")));

@@ -9,7 +9,7 @@ void require_points(std::size_t points, std::string_view need) {
     if (points == 0) throw Error("the cloud has 0 points; {}", need).hint("`scanmill info` shows what a file contains");
     if (points > ~u32(0))
         throw Error("the cloud has {} points; at most {} are supported", points, ~u32(0))
-            .hint("split the scan, or thin it first with `voxel-thin`");
+            .hint("split the scan, or thin it before this step");
 }
 
 void require_points(const PointCloud& cloud, std::string_view need) {
@@ -20,7 +20,7 @@ void require_points(const PointCloud& cloud, std::string_view need) {
 void require_triangles(const TriangleMesh& mesh, std::string_view need) {
     if (mesh.triangles.empty())
         throw Error("the mesh has no triangles; {}", need)
-            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
+            .hint("`scanmill info` shows what a file contains");
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
 }

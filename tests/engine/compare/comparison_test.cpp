@@ -92,7 +92,7 @@ TEST(Comparison, AValueThatIsGone_IsARegression) {
 TEST(Comparison, Reasons_GiveTheNumbers) {
     const Comparison comparison = compared(run_of_one(2, 0.75, {{"hausdorff", "+1 %", {}}}), run_of_one(1, 0.5));
     EXPECT_THAT(comparison.cells[0].reasons, ElementsAre("hausdorff 0.5 mm → 0.75 mm (+1 %)"));
-    EXPECT_EQ(comparison.cells[0].metrics[0].share(), 0.5);
+    EXPECT_EQ(comparison.cells[0].metrics[0].share, 0.5);
     EXPECT_TRUE(comparison.tripped());
     EXPECT_EQ(comparison.verdict, Verdict::regressed);
 }

@@ -2,6 +2,7 @@
 // Comparisons as other programs read them: every form stays valid for names with any bytes.
 
 #include "scanmill/compare/formats.hpp"
+#include "scanmill/compare/documents.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -263,7 +264,7 @@ TEST(ReportJson, InfinityAndAbsence_AreNull) {
 }
 
 TEST(VerdictJson, ListsTheCellsThatDidNotPass) {
-    const nlohmann::ordered_json json = verdict_json(every_verdict());
+    const Json json = json_of(verdict_event(every_verdict()));
     EXPECT_EQ(json["verdict"], "regressed");
     EXPECT_EQ(json["counts"]["failed"], 1);
     EXPECT_EQ(json["cells"].size(), 5u);

@@ -89,9 +89,10 @@ inline std::string made_command(const RunDetails& run, const CellRecord& cell, c
 }
 
 inline Comparison compared(const RunDetails& run, const RunDetails& accepted, std::vector<PastCosts> costs = {}) {
-    const Baseline baseline{accepted,
-                            Acceptance{1, accepted.summary.id, "2026-01-01T08:00:00Z", "Ann", "first", {}, {}, {}}, "",
-                            std::move(costs)};
+    const Baseline baseline{
+        accepted,
+        Acceptance{1, accepted.summary.id, accepted.start.workflow, "2026-01-01T08:00:00Z", "Ann", "first", {}, {}, {}},
+        "", std::move(costs)};
     return compare(run, &baseline, made_command);
 }
 

@@ -61,7 +61,7 @@ TEST_F(SessionRun, Costs_AreMeasuredInEveryPass_AndAddUpTheStepsOfTheCell) {
     for (const CellRecord& cell : run.cells) {
         ASSERT_THAT(cell.costs, SizeIs(3));
         double seconds = 0;
-        std::int64_t memory = 0;
+        u64 memory = 0;
         for (const StepRecord& step : run.steps)
             if (step.scan == cell.scan) {
                 seconds += step.effort.seconds;

@@ -13,6 +13,7 @@ namespace scanmill {
 namespace {
 
 using namespace growing;
+using test::degree;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -34,22 +35,22 @@ std::vector<Triangle> triangles_of(const Patch& patch, const std::vector<u32>& l
     return triangles;
 }
 
-constexpr double any = std::numeric_limits<double>::infinity();
+constexpr double any_radius = std::numeric_limits<double>::infinity();
 
 /// A square of side 2 with one corner lifted by 1. Over the diagonal 0-2 two triangles of √5, over 1-3 one of 2 and
 /// one of √6.
 const std::vector<Vec3> lifted{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 1), Vec3(0, 2, 0)};
 
 TEST(HoleTriangulation_FourCorners, TakesTheDiagonalOfLessArea) {
-    EXPECT_THAT(triangles_of(Patch(lifted), {0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(triangles_of(Patch(lifted), {0, 1, 2, 3}, any_radius, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
 }
 
 TEST(HoleTriangulation_Square, BreaksTheTieByTheFirstCorners) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
-    EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, any_radius, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
-    EXPECT_THAT(triangles_of(Patch(square), {1, 2, 3, 0}, any, 150),
+    EXPECT_THAT(triangles_of(Patch(square), {1, 2, 3, 0}, any_radius, 150),
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
@@ -75,7 +76,9 @@ TEST(HoleTriangulation_LargestRadius, LimitsTheTrianglesNotTheirNumber) {
 TEST(HoleTriangulation_NewEdges, AreShorterThanTheLongestEdge) {
     // A rhombus with diagonals of 4 and 2 and sides of √5. Both diagonals give the same area.
     const Patch rhombus({Vec3(0, -1, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(-2, 0, 0)});
-    const auto found = [&](double longest_edge) { return triangles_of(rhombus, {0, 1, 2, 3}, any, 150, longest_edge); };
+    const auto found = [&](double longest_edge) {
+        return triangles_of(rhombus, {0, 1, 2, 3}, any_radius, 150, longest_edge);
+    };
     EXPECT_THAT(found(4.001), UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
     EXPECT_THAT(found(4), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
     EXPECT_THAT(found(2.001), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3})) << "the sides are longer";
@@ -88,12 +91,12 @@ TEST(HoleTriangulation_AnObstacle, IsAvoidedOrNothingIsFound) {
     for (const Vec3& p : {Vec3(0.5, 0.5, -3), Vec3(0.4, 0.6, -3), Vec3(0.5, 0.5, 0.1)}) positions.push_back(p);
     Patch under(positions);
     under.add(4, 5, 6);
-    EXPECT_THAT(triangles_of(under, {0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(triangles_of(under, {0, 1, 2, 3}, any_radius, 150),
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
     positions[6] = Vec3(0.5, 0.5, 3);
     Patch through(positions);
     through.add(4, 5, 6);
-    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any_radius, 150), IsEmpty());
 }
 
 TEST(HoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
@@ -101,9 +104,9 @@ TEST(HoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
     std::vector<Vec3> positions = lifted;
     for (const Vec3& p : {Vec3(0.5, 0.5, -40), Vec3(0.4, 0.6, -40), Vec3(0.5, 0.5, 40)}) positions.push_back(p);
     Patch through(positions);
-    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), testing::SizeIs(2));
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any_radius, 150), testing::SizeIs(2));
     through.add(4, 5, 6);
-    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any_radius, 150), IsEmpty());
 }
 
 TEST(HoleTriangulation_ExistingEdges, AreNotRepeated) {
@@ -111,7 +114,7 @@ TEST(HoleTriangulation_ExistingEdges, AreNotRepeated) {
     positions.push_back(Vec3(1, 1, -3));
     Patch patch(positions);
     patch.add(1, 3, 4);
-    EXPECT_THAT(triangles_of(patch, {0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2, 3}, any_radius, 150),
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
@@ -120,8 +123,8 @@ TEST(HoleTriangulation_DihedralDeviation, IsLimited) {
     const double slope = std::tan(std::numbers::pi / 12);
     Patch patch({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0), Vec3(1, 1.5, 1.5 * slope)});
     patch.add(1, 0, 3);
-    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
-    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 164), IsEmpty());
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any_radius, 166), ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any_radius, 164), IsEmpty());
 }
 
 /// A loop with a strip around it that slopes down outwards by `fall` degrees: 0 is the loop's plane, 90 a wall below
@@ -193,7 +196,7 @@ TEST(NarrowHoles_RoundHoles, AreClosedBelowTheLargestRadius) {
     EXPECT_EQ(closed(ring(16, 1, 0), 1.001).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 15).closed, 0u);
-    EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 16).closed, 1u) << "of any size";
+    EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 16).closed, 1u) << "of any_radius size";
 }
 
 TEST(NarrowHoles_LoopsBesideSparsePoints, AreClosedBelowTheLargestRadiusOfAPoint) {
@@ -229,7 +232,7 @@ TEST(NarrowHoles_DihedralDeviation, EndsTheSurfaceAboveItsLimit) {
     // A lid deviates from the strip by its fall, opposite parts of the strip from each other by twice as much.
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 103).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97).closed, 0u) << "opposite parts of the strip differ too much";
-    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97, 16).closed, 1u) << "of any size";
+    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97, 16).closed, 1u) << "of any_radius size";
     EXPECT_EQ(closed(ring(16, 1, 85), 1.1, 171).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 171).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 172).closed, 1u) << "a tip";
@@ -257,7 +260,7 @@ TEST(NarrowHoles_OneObstacle, IsReplacedAtLoopsOfAtMost30Corners) {
     const NarrowHoles at_31 = closed(ring(31, 3, 0, 1), 3.1);
     EXPECT_EQ(at_31.closed, 0u);
     EXPECT_EQ(at_31.replaced, 0u);
-    EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole in any case";
+    EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole in any_radius case";
 }
 
 TEST(NarrowHoles_TwoObstacles, AreReplacedAtLoopsOfAtMost12Corners) {

@@ -12,16 +12,16 @@
 namespace scanmill {
 namespace {
 
-const Vec3 a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
+const Vec3 corner_a(0, 0, 0), corner_b(4, 0, 0), corner_c(0, 4, 0);
 
 TEST(NearestOnTriangle, EveryRegion_ByHand) {
-    EXPECT_EQ(nearest_on_triangle({1, 1, 5}, a, b, c), Vec3(1, 1, 0));       // face
-    EXPECT_EQ(nearest_on_triangle({-1, -2, 1}, a, b, c), a);                 // the three corners
-    EXPECT_EQ(nearest_on_triangle({7, -1, 1}, a, b, c), b);
-    EXPECT_EQ(nearest_on_triangle({-1, 9, -2}, a, b, c), c);
-    EXPECT_EQ(nearest_on_triangle({1, -2, 1}, a, b, c), Vec3(1, 0, 0));      // the three edges
-    EXPECT_EQ(nearest_on_triangle({-3, 3, 0}, a, b, c), Vec3(0, 3, 0));
-    EXPECT_EQ(nearest_on_triangle({4, 4, 0}, a, b, c), Vec3(2, 2, 0));
+    EXPECT_EQ(nearest_on_triangle({1, 1, 5}, corner_a, corner_b, corner_c), Vec3(1, 1, 0));       // face
+    EXPECT_EQ(nearest_on_triangle({-1, -2, 1}, corner_a, corner_b, corner_c), corner_a);  // the three corners
+    EXPECT_EQ(nearest_on_triangle({7, -1, 1}, corner_a, corner_b, corner_c), corner_b);
+    EXPECT_EQ(nearest_on_triangle({-1, 9, -2}, corner_a, corner_b, corner_c), corner_c);
+    EXPECT_EQ(nearest_on_triangle({1, -2, 1}, corner_a, corner_b, corner_c), Vec3(1, 0, 0));  // the three edges
+    EXPECT_EQ(nearest_on_triangle({-3, 3, 0}, corner_a, corner_b, corner_c), Vec3(0, 3, 0));
+    EXPECT_EQ(nearest_on_triangle({4, 4, 0}, corner_a, corner_b, corner_c), Vec3(2, 2, 0));
 }
 
 TEST(NearestOnTriangle, Corners_AreFoundExactly) {
@@ -37,15 +37,18 @@ TEST(NearestOnTriangle, Corners_AreFoundExactly) {
 
 TEST(NearestOnTriangle, CornersOnALine_AreASegment) {
     const Vec3 middle(1, 0, 0);
-    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, a, middle, b), Vec3(3, 0, 0));
-    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, middle, b, a), Vec3(3, 0, 0));
-    EXPECT_EQ(nearest_on_triangle({9, 2, 0}, b, a, middle), b);
-    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, a, a, b), Vec3(3, 0, 0));  // two equal corners, every way round
-    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, a, b, a), Vec3(3, 0, 0));
-    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, b, a, a), Vec3(3, 0, 0));
+    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, corner_a, middle, corner_b), Vec3(3, 0, 0));
+    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, middle, corner_b, corner_a), Vec3(3, 0, 0));
+    EXPECT_EQ(nearest_on_triangle({9, 2, 0}, corner_b, corner_a, middle), corner_b);
+    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, corner_a, corner_a, corner_b),
+              Vec3(3, 0, 0));  // two equal corners, every way round
+    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, corner_a, corner_b, corner_a), Vec3(3, 0, 0));
+    EXPECT_EQ(nearest_on_triangle({3, 2, 0}, corner_b, corner_a, corner_a), Vec3(3, 0, 0));
 }
 
-TEST(NearestOnTriangle, EqualCorners_AreAPoint) { EXPECT_EQ(nearest_on_triangle({3, 2, 1}, b, b, b), b); }
+TEST(NearestOnTriangle, EqualCorners_AreAPoint) {
+    EXPECT_EQ(nearest_on_triangle({3, 2, 1}, corner_b, corner_b, corner_b), corner_b);
+}
 
 /// The distance's minimum by ternary search along both sides: slow, and nothing in common with the tested way.
 double searched_distance(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {

@@ -85,9 +85,9 @@ private:
 
 Wrapping wrapping_of(std::string_view bytes) {
     if (bytes.starts_with(gzip_magic)) return Wrapping::gzip;
-    const bool is_utf32 = bytes.substr(2).starts_with(std::string_view("\0\0", 2));
     const bool has_mark = bytes.starts_with(little_mark) || bytes.starts_with(big_mark);
-    return has_mark && !is_utf32 ? Wrapping::utf16 : Wrapping::none;
+    const bool is_utf16 = has_mark && !bytes.substr(2).starts_with(std::string_view("\0\0", 2));  // else UTF-32
+    return is_utf16 ? Wrapping::utf16 : Wrapping::none;
 }
 
 Array<char> decompressed(std::string_view gzip, std::uint64_t most, const OnWarning& on_warning) {
