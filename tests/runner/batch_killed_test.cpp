@@ -66,7 +66,8 @@ std::map<std::string, std::string> results_of(const nlohmann::json& run) {
     }
     for (const auto& step : run["steps"])
         results[step["step"].get<std::string>() + step["key"].get<std::string>()] =
-            step["outcome"].dump() + step["parameters"].dump() + step["metrics"].dump() + step["properties"].dump();
+            step["outcome"].dump() + step.value("parameters", nlohmann::json()).dump() +
+            step.value("metrics", nlohmann::json()).dump() + step.value("properties", nlohmann::json()).dump();
     return results;
 }
 

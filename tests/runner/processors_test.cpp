@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -131,14 +133,20 @@ TEST(Processors, NoModuleCallsAFunctionWhoseVariantsDiffer) {
     for (const char* folder : {"plugins", "formats"})
         for (const auto& entry : std::filesystem::directory_iterator(build_folder() + "/lib/scanmill/" + folder))
             if (entry.path().extension() == ".so") files.push_back(entry.path());
+    const std::set<std::string> names{"sin", "cos",  "tan", "sincos", "asin",  "acos", "atan", "atan2",
+                                      "exp", "exp2", "log", "log2",   "log10", "pow",  "cbrt", "hypot"};
+    const TemporaryFolder folder;
     for (const auto& file : files) {
-        const std::string content = content_of(file);
-        for (const std::string name : {"sin", "cos", "tan", "sincos", "asin", "acos", "atan", "atan2", "exp", "exp2",
-                                       "log", "log2", "log10", "pow", "cbrt", "hypot"})
-            for (const std::string suffix : {"", "f"}) {
-                const std::string symbol = name + suffix;
-                EXPECT_EQ(content.find('\0' + symbol + '\0'), std::string::npos) << file << " calls " << symbol;
-            }
+        const std::string list = (folder / "symbols").string();
+        const std::string command = "nm -D --undefined-only --format=posix '" + file.string() + "' > '" + list + "'";
+        ASSERT_EQ(std::system(command.c_str()), 0);
+        std::ifstream symbols(list);
+        for (std::string line; std::getline(symbols, line);) {
+            std::string name = line.substr(0, line.find_first_of("@ "));
+            EXPECT_FALSE(names.contains(name)) << file << " calls " << name;
+            if (name.ends_with('f')) name.pop_back();
+            EXPECT_FALSE(names.contains(name)) << file << " calls the single precision of " << name;
+        }
     }
 }
 

@@ -17,7 +17,12 @@ protected:
                                     bin_size + "}\noutputs: {'{scan}.out.ply': voxel-thin" + more + "}\n");
     }
     std::string checked(const std::string& format) {
-        const ProgramResult result = scanmill({"check", "w.yaml", "--plan", "--format", format});
+        std::vector<std::string> arguments{"check", "w.yaml", "--plan"};
+        if (format == "json")
+            arguments.emplace_back("--json");
+        else
+            arguments.insert(arguments.end(), {"--format", format});
+        const ProgramResult result = scanmill(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return result.out;
     }

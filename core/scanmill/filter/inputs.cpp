@@ -19,8 +19,7 @@ void require_points(const PointCloud& cloud, std::string_view need) {
 
 void require_triangles(const TriangleMesh& mesh, std::string_view need) {
     if (mesh.triangles.empty())
-        throw Error("the mesh has no triangles; {}", need)
-            .hint("`scanmill info` shows what a file contains");
+        throw Error("the mesh has no triangles; {}", need).hint("`scanmill info` shows what a file contains");
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
 }

@@ -411,7 +411,7 @@ struct FieldsForm {
                 if (field.is_optional) form = JsonForm<typename Member::value_type>::schema();
             if (field.is_nullable || field.applies) form = schema::or_null(std::move(form));
             schema::add(object, field.name, schema::described(field.doc, field.unit_text, std::move(form)),
-                        !field.is_optional);
+                        !field.is_optional && !field.is_nullable && !field.applies);
         });
     }
 

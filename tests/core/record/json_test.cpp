@@ -109,7 +109,7 @@ TEST(RecordJson, Schema_FollowsFromTheFields) {
     EXPECT_EQ(members["list"]["items"]["properties"]["number"]["type"], "integer");
     EXPECT_EQ(members["range"]["maxItems"], 2);
     EXPECT_EQ(schema["additionalProperties"], false);
-    EXPECT_EQ(schema["required"], Json({"outcome", "length", "list", "order", "range", "point", "either", "frame"}));
+    EXPECT_EQ(schema["required"], Json({"outcome", "list", "order", "range", "either"}));
 }
 
 }  // namespace

@@ -23,7 +23,9 @@ struct Marker {
     std::string name;
     Vec3 at;
 };
-constexpr auto fields(const Marker*) { return std::tuple{field("name", &Marker::name), field("at", &Marker::at)}; }
+constexpr auto fields(const Marker*) {
+    return std::tuple{field("name", &Marker::name), field("at", &Marker::at).means(Meaning::position)};
+}
 
 struct MarkersDocument {
     Frame frame;

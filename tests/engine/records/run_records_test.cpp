@@ -226,21 +226,6 @@ TEST_F(Records, OfAnotherLayout_AreRefusedAndLeftAlone) {
     }
 }
 
-TEST_F(Records, Truncated_AreAnErrorThatNamesTheFile) {
-    {
-        RunRecords records = RunRecords::append_to(file());
-        const std::int64_t run = records.begin(some_start());
-        for (std::size_t node = 0; node < 200; ++node) records.add(run, {some_step(node)}, {});
-        records.end(run, "ok", 1);
-    }
-    const std::string whole = content_of(file());
-    for (const std::size_t size : {whole.size() / 2, std::size_t(100), std::size_t(10)}) {
-        folder_.write("records.sqlite", whole.substr(0, size));
-        const auto read = [&] { RunRecords::read(file()).run(1); };
-        EXPECT_THAT(sentence_of(read), HasSubstr("records.sqlite")) << size;
-    }
-}
-
 TEST_F(Records, ARunAfterAnotherOfEqualNodes_CountsEachNodeOnce) {
     RunRecords records = RunRecords::append_to(file());
     const std::int64_t run = records.begin(some_start());
@@ -380,7 +365,8 @@ TEST_F(Records, JournalOfAKilledRun_IsRolledBackByTheReader) {
     {
         SQLite::Database writing(file().string(), SQLite::OPEN_READWRITE);
         writing.exec("PRAGMA cache_size = 1; BEGIN; UPDATE run SET version = 'half'");
-        for (int i = 0; i < 1000; ++i) writing.exec("INSERT INTO log VALUES (1, hex(randomblob(2000)))");
+        for (int i = 0; i < 1000; ++i)
+            writing.exec("INSERT INTO step_log (parent, value) VALUES (1, hex(randomblob(2000)))");
         std::filesystem::copy(file(), folder_ / "killed/records.sqlite");
         std::filesystem::copy(file().string() + "-journal", folder_ / "killed/records.sqlite-journal");
     }

@@ -144,8 +144,8 @@ TEST(VoxelThinTolerance, OlderColumnsOfTheseNames_AreReplacedWithAWarning) {
     const VoxelThinResult twice = voxel_thin(once.points, within(0.02), context);
     EXPECT_EQ(twice.points.columns.size(), 6u);
     ASSERT_EQ(context.warnings().size(), 6u);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("`curvature-1`"));
-    EXPECT_THAT(context.warnings()[5], HasSubstr("`bin-size`"));
+    EXPECT_THAT(context.warnings()[0], HasSubstr("'curvature-1'"));
+    EXPECT_THAT(context.warnings()[5], HasSubstr("'bin-size'"));
 }
 
 TEST(VoxelThinTolerance, OrderAndThreads_ChangeNoSize) {
