@@ -148,8 +148,8 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
         system.solve(x, execution);
         return x;
     };
-    // Of the least weight. To a constant, the squared error of a solution is its difference from that of the data in
-    // the norm of the data's matrix, and so is its part near a row.
+    // Solutions with the least weight. A solution's squared error is, up to a constant, its difference from the data's
+    // own solution in the norm of the data's matrix. The same holds for the part near a row.
     const std::array<Solution, 2> least{solution(0, weights.front()), solution(1, weights.front())};
     std::vector<double> size_of_least(size, 0.0), best(size, weights.front()), least_error;
     for (std::size_t half = 0; half < 2; ++half) {

@@ -39,7 +39,7 @@ public:
     /// x · matrix · x as a sum over the rows.
     std::vector<double> energies(const std::vector<Vector>& x) const;
 
-    /// Of every row the sum of the values over the rows that its equation contains.
+    /// For each row, the sum of the values over the rows that its equation contains.
     std::vector<double> sums_of_neighbours(std::span<const double> values) const;
 
     /// What the row's equation leaves for its own unknowns, the others being `x`.
@@ -55,10 +55,10 @@ private:
     std::vector<Vector> right_;
 };
 
-/// Of `weights`, for every row the one with which each half of the data predicts the other half best near that row:
-/// noise is not the same everywhere. Near are two rings of neighbouring rows, or as many more, up to 20, as have about
-/// 2000 points. Ties: the first of `weights`. `add_prior` adds the prior of a weight to a half, `restrict` moves a
-/// solution to an admissible one.
+/// Chooses from `weights`, for each row, the weight with which each half of the data best predicts the other half near
+/// that row, because noise varies. "Near" means two rings of neighbouring rows, or more, up to 20, until about 2000
+/// points are reached. Ties: the first of `weights`. `add_prior` adds the prior of a weight to a half; `restrict` moves
+/// a solution to an admissible one.
 std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::size_t points,
                                  std::span<const double> weights,
                                  const std::function<void(BlockSystem&, double)>& add_prior,

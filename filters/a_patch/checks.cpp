@@ -25,7 +25,7 @@ class CreaseCheck {
 public:
     explicit CreaseCheck(const PatchComplex& patches) : patches_(patches) {}
 
-    /// Of a row and its partner.
+    /// Checks the tetrahedron of a row together with its partner.
     bool is_sound(u32 row) const {
         if (patches_.partners[row] == PatchComplex::no_partner || patches_.partners[row] > row) return true;
         return patches_.kinds[row] == PatchKind::sharp ? is_sound_gap(row) : is_sound_third(row);
@@ -34,7 +34,7 @@ public:
 private:
     static constexpr int steps = 16, parts = 32;  // of a line, and between two apexes
     static constexpr double rounding = 1e-12;  // of the largest weight
-    /// Of an edge, from either end: creases leap near the ends.
+    /// Shares of an edge, from either end, at which lines are sampled: creases deviate most near the ends.
     static constexpr std::array shares = {0.001, 0.003, 0.01, 0.02, 0.04, 0.08, 0.12, 0.17,
                                           0.21,  0.25,  0.29, 0.33, 0.37, 0.42, 0.46, 0.5};
 

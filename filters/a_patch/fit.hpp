@@ -73,7 +73,7 @@ struct PointDistances {
     std::vector<double> to_surface;
     std::vector<double> to_mesh;
 };
-/// Of the located points, in their order.
+/// Distances of the located points, in their order.
 PointDistances distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
                          const LocatedPoints& located, Execution& execution);
 

@@ -22,14 +22,14 @@ std::vector<std::vector<u32>> corners_of(const Sectors& sectors);
 
 CornerNormals at_corners(const Sectors& sectors, std::span<const Vec3> normals);
 
-/// Of every sector: the sum over its triangles of (u x v) / (|u|² |v|²), u and v being the edges at the vertex; unit
-/// length. Exact for vertices on a sphere, unlike angle weights, and needs no function whose result depends on the
-/// processor. Zero where the sum is. Source: Max 1999, "Weights for computing vertex normals from facet normals".
+/// For each sector, the sum over its triangles of (u x v) / (|u|² |v|²), scaled to length 1 unless it is 0; u and v are
+/// the edges at the vertex. Exact for vertices on a sphere, unlike angle weights. Uses no function whose result depends
+/// on the processor. Source: Max 1999, "Weights for computing vertex normals from facet normals".
 std::vector<Vec3> mesh_normals(const TriangleMesh& mesh, const Sectors& sectors);
 
-/// Of every sector: that of a quadric through its vertex, fitted to the 25 nearest of the points and other vertices; on
-/// the side of `outwards`. At sharp edges only points that are nearest to the sector's own triangles count; where there
-/// are fewer than 6, the result is that of `outwards`.
+/// For each sector, the normal of a quadric through its vertex, fitted to the 25 nearest of the points and the other
+/// vertices, turned to the side of `outwards`. At sharp edges only points count that are nearest to the sector's own
+/// triangles; if there are fewer than 6, the sector keeps the normal of `outwards`.
 std::vector<Vec3> point_normals(const TriangleMesh& mesh, const Sectors& sectors, std::span<const Vec3> points,
                                 std::span<const Vec3> outwards, Execution& execution);
 
@@ -37,7 +37,7 @@ struct GivenNormals {
     std::vector<Vec3> normals;  ///< by sector, the mean of the column's; zero where it has none
     std::size_t several = 0;  ///< sectors with different normals
 };
-/// Of the face column `corner-normals`. Throws Error if it is absent, has another shape, or a number is not finite.
+/// Reads the face column `corner-normals`. Throws Error if it is absent, has another shape, or a number is not finite.
 GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors);
 
 /// The unit vector whose least cosine with the normals is greatest. Pre: at least one; unit

@@ -16,7 +16,7 @@ namespace scanmill::a_patches {
 std::vector<double> outlier_distances(std::span<const double> distances, std::span<const u32> triangle_of_point,
                                       std::span<const std::array<u32, 3>> neighbours);
 
-/// Of a point that does not count.
+/// The distance of a point that does not count.
 inline constexpr double no_distance = std::numeric_limits<double>::infinity();
 
 }  // namespace scanmill::a_patches

@@ -49,7 +49,7 @@ std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sec
     return best ? std::optional(best->second) : std::nullopt;
 }
 
-/// Of a sector: the directions of the sharp edges at its sides, and the normals beyond them.
+/// For a sector: the directions of the sharp edges at its sides, and the normals beyond them.
 struct SharpSides {
     std::vector<Vec3> along, beyond;
 };

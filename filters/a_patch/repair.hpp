@@ -17,7 +17,7 @@ struct Repairs {
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
 
-/// Of the triangles of these corners.
+/// The normals of the triangles that have these corners.
 std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles);
 
 /// Whether the direction is more than 84 degrees from one of the normals.

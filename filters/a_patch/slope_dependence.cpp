@@ -110,8 +110,8 @@ SlopeDependence::Coefficients SlopeDependence::coefficients(const Barycentric& a
     const double w = at[0], i = at[1], j = at[2], top = at[3];
     Coefficients c{};
     if (is_edge_) {
-        // Of f(i, x, apex) and f(j, x, apex), and of f(i, x, x), f(j, x, x), on which the last two weights at x
-        // depend. The latter are the mean of both triangles; at a sharp edge they do not depend on slopes.
+        // The last two weights at x depend on f(i, x, apex), f(j, x, apex), f(i, x, x) and f(j, x, x). The last two of
+        // these are means over both triangles; at a sharp edge they do not depend on slopes.
         const double share = count_ == most_edges ? 0.5 : 0;
         const double beyond = (3 * w * w * top + w * w * w) / 2;
         const double of_i = 3 * w * w * i + beyond, of_j = 3 * w * w * j + beyond;

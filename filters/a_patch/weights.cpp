@@ -24,7 +24,7 @@ struct FaceSide {
     Vec3 apex;
     std::array<Vector4, 3> m;  ///< f(v, apex, .)
     Vector4 n;                 ///< f(apex, apex, .)
-    /// Of edge i: the middle of the two apexes; of a sharp edge the other apex; on the boundary the own one.
+    /// At edge i: the midpoint of the two apexes; at a sharp edge the other apex; on the boundary this apex.
     std::array<Vec3, 3> edge_point{};
     std::array<Vector4, 3> at_edge_point;  ///< its coordinates
     Eigen::Matrix3d curvature;

@@ -122,7 +122,7 @@ double spread_about_line(const Points& centred) {
     Matrix3 scatter = Matrix3::Zero();
     for (const Vec3& c : centred) scatter += c * c.transpose();
     const Vec3 line = Eigen::JacobiSVD<Matrix3>(scatter, Eigen::ComputeFullU).matrixU().col(0);
-    // Of the distances, not of the moments, whose roots lose half of the digits.
+    // Summed over the distances: the roots of the moments lose half of the digits.
     double sum = 0;
     for (const Vec3& c : centred) sum += (c - c.dot(line) * line).squaredNorm();
     return std::sqrt(sum);

@@ -44,7 +44,7 @@ struct AlignResult {
     std::vector<Vec3> residuals;
     /// Root of the mean squared length of the residuals; the largest length.
     double rms = 0, largest_residual = 0;
-    /// Of the target relative to the source, Umeyama's: 1 where both are equally large.
+    /// Size of the target relative to the source by Umeyama's method: 1 where both are equally large.
     double scale = 1;
     /// Standard error of a moved point, the largest over the corners of the part's box; nothing without a part.
     std::optional<double> error_at_part;

@@ -328,7 +328,7 @@ struct CellBounds {
     Bounds cell;
 };
 
-/// Of the facets in the mask, and of the cell if `with_cell`.
+/// Bounds for the facets in the mask, and for the cell if `with_cell`.
 CellBounds cell_bounds(const WeightedCorners& corners, double largest, unsigned facets, bool with_cell) {
     const CGAL::Protect_FPU_rounding<true> upwards;
     CellBounds result;

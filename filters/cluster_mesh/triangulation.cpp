@@ -24,7 +24,7 @@ constexpr double widest_corner_cosine = -0.984807753012208;
 constexpr double least_share = 0.02;
 
 /// Meshes with more points join first where the surface is flat: elsewhere the sides that they face are less certain.
-/// Of 0, 6, 20 and 60 this leaves the fewest loops on ten thinned models.
+/// Among 0, 6, 20 and 60, this value leaves the fewest loops on ten thinned models.
 constexpr std::size_t few_points = 6;
 
 /// Where the normals of near vertices are farther than 30 degrees from a triangle's, it is tested in space.

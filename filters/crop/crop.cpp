@@ -220,7 +220,7 @@ CropResult crop_alone(const Chunks& chunks, const CropParams& params, Context& c
     return crop_to(chunks, region, context);
 }
 
-/// Of `near`, in the frame of the cloud.
+/// The positions of `near` in the frame of the cloud.
 Buffer<Vec3> positions_beside(const PointCloud& cloud, const Frame& near, const Buffer<Vec3>& positions) {
     if (near.unit != cloud.frame.unit)
         throw Error("the {} points are in {}, and the {} points or vertices at `near` in {}; both need one unit",

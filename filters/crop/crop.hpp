@@ -22,7 +22,7 @@ struct CropParams {
     std::optional<std::vector<Length>> box;
     /// Three: x, y, z of the centre of a closed ball.
     std::optional<std::vector<Length>> centre;
-    /// Of the ball, 0 or more.
+    /// Radius of the ball, 0 or more.
     std::optional<Length> radius;
     /// Largest distance from `near` that is kept, 0 or more.
     std::optional<Length> within;

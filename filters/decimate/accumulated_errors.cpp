@@ -28,7 +28,7 @@ bool AccumulatedErrors::add_triangle(u32 i, u32 k, u32 j, const Vec3& normal, Si
     const std::array<Vec3, 3> corners{corners_[i].position, corners_[k].position, corners_[j].position};
     const double slope = normal.dot(up_);
     if (!(slope > 0)) return false;
-    // Of a point of the old surface over the new triangle, along `up`.
+    // Adds the height of a point of the old surface over the new triangle, measured along `up`.
     const auto add = [&](u32 triangle, const Vec3& old) {
         const double height = normal.dot(old - corners[0]) / slope;
         deltas_[triangle].add(std::abs(height), height >= 0);

@@ -60,8 +60,8 @@ struct DecimateResult {
     std::size_t removed = 0, flips = 0;
     /// Lines of sharp edges, from corner to corner or closed; vertices of class corner.
     std::size_t creases = 0, corners = 0;
-    /// Of the data points: the largest distance to the result, how many are farther than max_error, and how many were
-    /// so from the input. Absent without points.
+    /// For the data points: the largest distance to the result, how many are farther from it than max_error, and how
+    /// many were that far from the input. Absent without points.
     std::optional<double> points_max;
     std::size_t points_beyond = 0, points_left_out = 0;
 };

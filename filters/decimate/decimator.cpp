@@ -11,8 +11,8 @@ namespace scanmill::decimating {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
-/// Of the vertices that may be removed, the share with the smallest estimates that a round chooses from. Between 0.03
-/// and 0.3 the number of triangles of the result changes by less than 2 %; more makes fewer rounds.
+/// Each round chooses from this share of the removable vertices, those with the smallest estimates. Between 0.03 and
+/// 0.3 the number of triangles of the result changes by less than 2 %; larger shares need fewer rounds.
 constexpr double share_of_round = 0.25;
 constexpr std::size_t least_of_round = 64;
 constexpr std::size_t chunk = 64;

@@ -7,7 +7,7 @@
 namespace scanmill::decimating {
 
 struct SignedErrors {
-    /// Of the original surface above the new one, on the side of its normals; and below it.
+    /// Largest height of the original surface above the new one, on the side of its normals; largest depth below it.
     double outside = 0, inside = 0;
 
     void add(double distance, bool is_outside) {
@@ -25,7 +25,7 @@ struct SignedErrors {
     }
 };
 
-/// Of a removal or a flip.
+/// Limits for a removal or a flip.
 struct Limits {
     SignedErrors error;
     /// Cosine of the largest angle between a new triangle's normal and the mean normal of those it replaces.

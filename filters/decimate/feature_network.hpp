@@ -32,7 +32,7 @@ public:
     bool is_singular(u32 vertex) const { return classes_[vertex] == VertexClass::corner && counts_[vertex] == 0; }
     /// Whether the edge of the half-edge is sharp or on the boundary.
     bool is_feature(u32 half_edge) const { return features_[half_edge]; }
-    /// Of the mesh's declared sharp edges those that are no features at this scale.
+    /// Number of the mesh's declared sharp edges that are not features at this scale.
     std::size_t ignored_declared() const { return ignored_declared_; }
 
     /// Any half-edge from the vertex; on the boundary the first of its fan, counter-clockwise. half_edges::boundary for

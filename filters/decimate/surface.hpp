@@ -34,7 +34,7 @@ public:
     void for_each_point(u32 row, Action&& action) const {
         for (u32 number = heads_[row]; number != EditableMesh::none; number = nexts_[number]) action(number);
     }
-    /// Of the triangle's points, and of the paths at its edges when it was made.
+    /// Errors at the triangle's points, and along the paths at its edges when it was made.
     SignedErrors errors(u32 row) const { return {errors_[row][0], errors_[row][1]}; }
 
     BoundingBox box_of(u32 row) const { return box_of(mesh_.triangle(row)); }

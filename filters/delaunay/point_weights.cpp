@@ -76,7 +76,7 @@ const Column& column_named(const PointCloud& cloud, const std::string& name) {
 }
 
 constexpr std::size_t chunk = 1 << 12;
-/// Of d²: at 1 a point may lie exactly on the border of its own power cell.
+/// Largest share of the squared distance: at 1 a point may lie exactly on the border of its own power cell.
 constexpr double most_of_distance = 0.9;
 
 double mean_distance(std::span<const Neighbour> neighbours) {

@@ -17,7 +17,7 @@ struct PointWeights {
     Array<u32> duplicates;
 };
 
-/// Of several points at one position with different weights the largest counts; a warning gives the number of such
+/// If points at one position have different weights, the largest counts; a warning gives the number of such
 /// positions. With `spacing`, a warning says that a column of that name is not read. Pre: params.weights, finite
 /// positions, at least two distinct. Throws Error for a factor that is negative or not finite, or too large for
 /// `spacing`, and for what column_weights() refuses.

@@ -23,9 +23,9 @@ using Criterion = EdgeFlipParams::Criterion;
 
 constexpr double least_gain = 1e-9;  // in radians, or of the length
 constexpr double straight = 1e-6;  // radians below π at which two angles form a straight line
-/// Of a triangle's height to its longest edge: below, it has no normal (as in facet_normals.hpp).
+/// Ratio of a triangle's height to its longest edge below which it has no normal (as in facet_normals.hpp).
 constexpr double no_height = 1e-9;
-/// Of cosines of dihedral deviations, and of distances to lengths: covers rounding in planes.
+/// Tolerances for rounding in planes: cosines of dihedral deviations, and distances as shares of lengths.
 constexpr double cosine_rounding = 1e-12, distance_rounding = 1e-9;
 
 /// The direction of an angle in [0, π]: ratios of its cosine and sine.
@@ -306,7 +306,7 @@ private:
     BlockedEdges left_;
 };
 
-/// Of the vertices in triangles those at the position of an earlier one.
+/// Number of vertices in triangles that lie at the position of an earlier one.
 std::size_t repeated_positions(const TriangleMesh& mesh) {
     const std::size_t slots = std::bit_ceil(2 * mesh.positions.size() + 1);
     constexpr u32 empty = ~u32(0);

@@ -29,7 +29,7 @@ namespace {
 /// To get rid of edges of four triangles, by filling the cells around them.
 constexpr int most_attempts = 20;
 
-/// Of a suggested triangle, as a share of its area: a fair filling is larger than the flattest one.
+/// Cost of a suggested triangle as a share of its area: a fair triangulation is larger than the flattest one.
 constexpr double cost_of_suggested = 0.1;
 
 /// The area of the mesh's triangles that a cell is behind and in front of, and their component.
@@ -92,7 +92,7 @@ private:
         return std::abs((positions_[b] - from).cross(positions_[c] - from).dot(positions_[d] - from)) / 6;
     }
 
-    /// Of a facet on the boundary.
+    /// Cost of a facet on the boundary.
     double cost(const Triangle& corners) const {
         const bool is_suggested =
             std::ranges::binary_search(suggested_, smallest_first(corners)) ||

@@ -36,7 +36,7 @@ struct FillHolesResult {
     /// Loops of `filled` that were closed together, as the boundary of a solid; triangles of the input that this
     /// replaced.
     std::size_t together = 0, replaced = 0;
-    /// Of all fillings.
+    /// Total area of the hole triangulations.
     double area = 0;
     /// Length of the longest filled loop; 0 without one.
     double longest = 0;

@@ -20,15 +20,15 @@ struct FilledMesh {
     std::size_t kept = 0;
     /// The last vertices are copies of others, at their positions.
     std::size_t copies = 0;
-    /// Of the input's triangles that are left out.
+    /// Area of the input's triangles that are left out.
     double replaced_area = 0;
     /// By triangle: 1 if it fills a hole.
     Array<u8> filled;
 
-    /// Of one triangle.
+    /// Twice the area vector of one triangle.
     Vec3 twice_area(std::size_t t) const;
     double area() const;
-    /// Of the triangles that fill a hole, less that of the input's triangles that were replaced; at least 0.
+    /// Area of the triangles that fill a hole, minus that of the input's triangles that they replace; at least 0.
     double filled_area() const;
 };
 

@@ -65,7 +65,7 @@ private:
     const TriangleMesh& mesh_;
     u32 vertices_, count_;
     Array<u32> lowest_;
-    /// Of the mesh, between vertices of loops.
+    /// Edges of the mesh between vertices of loops.
     std::unordered_set<u64> loop_edges_;
 };
 

@@ -48,9 +48,9 @@ struct MeasureParams {
 /// Shares of samples within a threshold, in [0, 1].
 struct NearShares {
     double threshold = 0;
-    /// Of the mesh within the threshold of the truth; absent if the truth is a cloud.
+    /// Share of the mesh within the threshold of the truth; absent if the truth is a cloud.
     std::optional<double> precision;
-    /// Of the truth within the threshold of the mesh.
+    /// Share of the truth within the threshold of the mesh.
     double recall = 0;
     /// Harmonic mean of the two, 0 if both are 0; absent with precision.
     std::optional<double> f_score;

@@ -16,7 +16,7 @@ struct MeshNumbers {
     std::optional<double> volume;
     /// Triangles whose corners are on one line, decided exactly.
     std::size_t collinear_triangles = 0;
-    /// Of every triangle's smallest angle, in radians: least, 5 % and 50 % quantile. Collinear triangles have 0.
+    /// Smallest angle per triangle, in radians: minimum, 5 % and 50 % quantile. Collinear triangles have 0.
     double least_angle = 0, angle_p5 = 0, angle_p50 = 0;
     /// Longest edge over 2 √3 inradii: 1 for an equilateral triangle. Collinear triangles do not count.
     double aspect_p50 = 1, aspect_p95 = 1, largest_aspect = 1;

@@ -20,7 +20,7 @@ namespace scanmill {
 struct MergeParams {
     enum class Prefer { none, lower_uncertainty };
     Prefer prefer = Prefer::none;
-    /// Of points of different inputs within this distance of each other, one is kept; 0 keeps all.
+    /// Keeps one of the points of different inputs that lie within this distance of each other; 0 keeps all.
     Length within;
     /// Stands for the column `uncertainty` where an input lacks it, and for NaN in it; 0 or more.
     std::optional<Length> default_uncertainty;

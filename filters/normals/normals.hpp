@@ -42,7 +42,7 @@ struct NormalsResult {
     PointCloud points;
     /// Points whose side is decided: all, or with Orient::none 0.
     std::size_t oriented = 0;
-    /// Of `oriented`: those turned towards the scanner.
+    /// Number of those `oriented` normals that were turned towards the scanner.
     std::size_t by_sensor = 0;
     /// Points whose normal or whose side is doubtful.
     std::size_t doubtful = 0;

@@ -26,7 +26,7 @@ namespace {
 using Method = OutlierRemovalParams::Method;
 
 constexpr u32 most_neighbours = 1000;
-/// Of the mean distance to the neighbours: a point hovers if its nearest position and their plane are farther.
+/// A point hovers if its nearest position and its plane are farther away than this share of its mean distance.
 constexpr double hovering_share = 0.6;
 /// Largest surface variation of a flat suspect and its neighbours.
 constexpr double flat_variation = 0.0125;
@@ -175,7 +175,7 @@ double statistical_limit(const Neighbourhoods& all, double factor, bool repeated
     }
 }
 
-/// Of the suspects, flat ones lie in the surface that their neighbours form, hovering ones above it.
+/// Flat suspects lie in the surface that their neighbours form; hovering ones lie above it.
 enum class State : u8 { passed, flat, suspect, hovering };
 
 /// Pre: at least one neighbour.

@@ -72,7 +72,7 @@ struct OutlierRemovalResult {
 ///    - if neither is a suspect and they are at most max(limit, radius) apart, or
 ///    - if each is one of the `neighbours` nearest of the other and they are at most 2 limit apart, or
 ///    - if both passed the test or are flat, one is among the nearest of the other, and they are at most 2 limit apart.
-///    Of equally near positions the lower in order of x, then y, then z is nearer.
+/// Among equally near positions, the lower in order of x, then y, then z is nearer.
 /// 4. Components with at most `neighbours` positions, or fewer than `min_component` of all, are removed. The first rule
 ///    never removes the largest component, so a scan with few points stays.
 ///

@@ -12,7 +12,7 @@ struct PatchDistanceResult {
     /// All points, with their columns and `distance-to-patches` (double, a length): positive outside the object,
     /// negative inside, NaN where there is none. A column of that name in the input is replaced, with a warning.
     PointCloud points;
-    /// Of the points with a distance.
+    /// Statistics over the points that have a distance.
     double rms = 0, p95 = 0, max = 0;
     /// Points farther away than a tenth of the surface's diagonal, and those nearest to an open surface's boundary.
     std::size_t unlocated = 0;

@@ -21,9 +21,9 @@ namespace scanmill::plate {
 
 namespace {
 
-/// Of the plane's points, in a group that belongs to the plate.
+/// Least share of the plane's points in a group that belongs to the plate.
 constexpr double least_group = 0.02;
-/// Of a side's length at either end, where corners are rounded or chamfered.
+/// Share of a side's length, at either end, that is ignored because corners are rounded or chamfered.
 constexpr double end_share = 0.1;
 /// A line with half of the strips is missed once in 10^62 runs.
 constexpr std::size_t line_trials = 500;
@@ -93,7 +93,7 @@ struct Strips {
     std::size_t count;
 
     double width() const { return (1 - 2 * end_share) * length / static_cast<double>(count); }
-    /// Of a position along the side; `count` beyond the strips.
+    /// The strip of a position along the side; `count` beyond the strips.
     std::size_t at(double along) const {
         const double strip = (along / length - end_share) / (1 - 2 * end_share);
         if (!(strip >= 0 && strip < 1)) return count;

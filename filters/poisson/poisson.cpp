@@ -151,7 +151,7 @@ TriangleMesh surface_of(const Oriented& points, const Frame& frame, const Poisso
     return mesh;
 }
 
-/// Of PCL's cracks.
+/// Counts of the cracks that PCL leaves.
 struct Cracks {
     std::size_t filled = 0, open = 0;
 };

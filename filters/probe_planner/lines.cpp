@@ -167,7 +167,7 @@ std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& c
 }
 
 Window window_round(const Line& line, u32 segment, const Vec3& point) {
-    // Of a closed line at most half is in a window.
+    // A window covers at most half of a closed line.
     const u32 widest = line.closed ? std::min(reach, (line.segments() - 1) / 4) : reach;
     for (u32 most = widest;; --most) {
         Window window;

@@ -26,11 +26,11 @@ struct ReferencePoint {
     double interior_angle;  ///< alpha
     /// No segment of the window has a right normal: n2 = e x n1, and alpha is a right angle.
     bool assumed;
-    /// Of the window, the mean.
+    /// Mean length of the window's segments.
     double segment_length;
     /// How far the chord at T may lie beyond the edge, over the right side: the sagitta of a line that turns right.
     double beyond;
-    /// Of the hole that the line is the rim of; NaN for other lines and holes that are not round.
+    /// Radius of the hole that the line bounds; NaN for other lines and for holes that are not round.
     double hole_radius;
 };
 

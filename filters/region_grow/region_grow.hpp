@@ -42,7 +42,7 @@ struct RegionGrowParams {
         circumradius,  ///< the point whose circle with the edge is empty
         midpoint  ///< as in the thesis: the point nearest the edge's midpoint
     };
-    /// Of every triangle of the first pass; 0 or more, below 60 degrees.
+    /// Least angle of every triangle of the first pass; 0 or more, below 60 degrees.
     Angle min_angle = Angle::degrees(10);
     /// Between the normals of a new triangle and each one that shares an edge; above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);

@@ -93,7 +93,7 @@ private:
     };
 
     double search_radius(u32 from, u32 to) const;
-    /// Of the points that may be candidates of an edge, around an end of it.
+    /// Squared distance from an end of an edge within which points may be candidates.
     double squared_search_range(double radius) const;
     /// Fills near_ with the points to consider.
     void collect(u32 from, u32 to, double radius, bool wide);

@@ -448,7 +448,7 @@ private:
     const RepairParams& params_;
     Context& context_;
     RepairResult result_;
-    /// Of the input, then of copies.
+    /// Positions of the input, then of copies.
     Array<Vec3> positions_;
     /// By vertex of the input: the one it is joined to.
     Array<u32> joined_;
@@ -496,7 +496,7 @@ bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairP
     double volume = 0, sum = 0;
     const Vec3& origin = positions[mesh.triangles[0][0]];
     for (const auto& [a, b, c] : mesh.triangles) {
-        // Of two triangles with the same corners, all have two.
+        // If two triangles have the same corners, all three corners are in two triangles.
         if (corners[a] == 2 && corners[b] == 2 && corners[c] == 2) return false;
         if (collinear(positions[a], positions[b], positions[c])) return false;
         const double part = (positions[a] - origin).dot((positions[b] - origin).cross(positions[c] - origin));

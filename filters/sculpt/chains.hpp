@@ -18,7 +18,7 @@ class Chain {
 public:
     /// In the order of removal; empty if there is no chain.
     std::span<const u32> cells() const { return {cells_.data(), length_}; }
-    /// Of all flips together.
+    /// The sum over all flips.
     double gain() const { return gain_; }
 
 private:
@@ -61,7 +61,7 @@ private:
     bool evaluate(Chain& chain) const;
     bool is_better(const Chain& chain, const Chain& best) const;
     void search_from(const Chain& chain, Chain& best) const;
-    /// Of the chains that may contain the changed cell.
+    /// Finds the first cells of the chains that may contain the changed cell.
     void find_first_cells(u32 changed);
     void recheck_changed();
 

@@ -11,7 +11,7 @@
 namespace scanmill::sculpting {
 
 struct Opening {
-    /// Of the flips and the exposing step together.
+    /// The sum over the flips and the exposing step.
     double gain = 0;
     /// Cells to remove in this order. `first` may be none; if `second` is none, there is no opening.
     u32 first = none, second = none;

@@ -12,12 +12,12 @@ namespace scanmill::sculpting {
 
 struct WaitingStep {
     double gain = 0;
-    /// Of equal gains the larger comes first: squared circumradius for exposing steps, else 0.
+    /// Among equal gains the larger radius comes first: squared circumradius for exposing steps, else 0.
     double radius = 0;
     u32 cell = none;
     /// When the cell was evaluated.
     u32 time = 0;
-    /// Of StepCriteria::uncovers_too_large(): such steps come last.
+    /// Result of StepCriteria::uncovers_too_large(): such steps come last.
     bool is_too_large = false;
 };
 

@@ -92,7 +92,7 @@ Moves moves_of(const PointTree& tree, const SmoothParams& params, Context& conte
     return moves;
 }
 
-/// Of the points with a polynomial; not all are flat.
+/// Median error over the points that have a polynomial; not all are flat.
 double median_error(const Moves& moves) {
     Array<double> errors;
     for (std::size_t i = 0; i < moves.errors.size(); ++i)

@@ -66,7 +66,7 @@ private:
         return lengths;
     }
 
-    /// Of the rows: equal steps of length, or of the triangle if lengths are not given.
+    /// Spaces the rows: equal steps of length, or equal steps in the triangle if no lengths are given.
     static void set_shares(Grid& grid, const std::vector<double>& lengths) {
         grid.shares.clear();
         for (unsigned r = 0, step = 0; r <= grid.rows; ++r) {

@@ -25,7 +25,7 @@ struct Grid {
     u32 first_vertex = 0;
     double worst = 0;  ///< distance found between the triangles and the surface
 
-    /// Of row r on one third.
+    /// Number of segments of row r within one third.
     unsigned segments_of(unsigned r) const { return (segments * r + rows - 1) / rows; }
 };
 

@@ -25,13 +25,13 @@ enum class Remedy {
     declare_unit,
     convert_unit,
     drop_invalid_points,  ///< from a file
-    drop_invalid_rows,    ///< of a scan while it is read
+    drop_invalid_rows,    ///< drop the invalid rows of a scan while it is read
     choose_output_folder,
     choose_cache_folder,
     run_without_workers,
     declare_truth_unit,
     move_to_frame,
-    mesh_points  ///< of a mesh that is not a surface
+    mesh_points  ///< use only the points of a mesh that is not a surface
 };
 
 class __attribute__((visibility("default"))) Error : public std::exception {

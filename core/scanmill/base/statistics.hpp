@@ -10,7 +10,7 @@
 
 namespace scanmill {
 
-/// Of an even number of values the upper of the two in the middle.
+/// For an even number of values, the upper of the two in the middle.
 template <class Values>
 double median(Values&& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

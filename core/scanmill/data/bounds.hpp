@@ -22,7 +22,7 @@ struct BoundingBox {
     /// Length of the diagonal; 0 if empty.
     double diagonal() const { return empty() ? 0 : (high - low).stableNorm(); }
 };
-/// Of the finite positions.
+/// The smallest box that contains the finite positions.
 BoundingBox bounding_box(std::span<const Vec3> positions);
 
 /// Sides of a scan's box, in its own unit, for which squares and cubes of all its lengths keep all their digits.

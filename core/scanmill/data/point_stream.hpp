@@ -25,7 +25,7 @@ public:
     PointStream& operator=(const PointStream&) = delete;
 
     const Frame& frame() const { return frame_; }
-    /// Of all points, relative to frame().origin.
+    /// The box of all points, relative to frame().origin.
     const BoundingBox& bounds() const { return box_.all; }
     /// The same, and without stray points; equals robust_box() of the positions.
     const RobustBox& robust_box() const { return box_; }
@@ -55,7 +55,7 @@ protected:
     void choose_origin();
 
     Frame frame_;
-    FiniteBounds world_;  ///< of the pieces read so far, as in the file
+    FiniteBounds world_;  ///< bounds of the pieces read so far, in the file's coordinates
     RobustBox box_;
     std::vector<std::size_t> pieces_;
 };

@@ -132,7 +132,7 @@ std::pair<Array<u32>, BoundingBox> Extremes::stray_rows() {
     rows.erase(std::ranges::unique(rows).begin(), rows.end());
     if (rows.size() > most_stray) rows.clear();
 
-    // Of the most_stray + 1 entries of an axis and side at least one is not stray.
+    // At each end of each axis, at least one of the most_stray + 1 entries is not stray.
     const auto is_stray = [&](const Entry& entry) { return std::ranges::binary_search(rows, entry.row); };
     BoundingBox robust;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -31,7 +31,7 @@ struct RobustBox {
     BoundingBox robust;             ///< of those that are not stray
     std::vector<StrayPoint> stray;  ///< in the order of their rows
 
-    /// Of the robust box; 0 if empty.
+    /// The diagonal of the robust box; 0 if empty.
     double diagonal() const { return robust.diagonal(); }
 };
 

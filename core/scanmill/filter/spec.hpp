@@ -65,8 +65,8 @@ constexpr auto fields(const MetricSpec*) {
                       field("better", &T::better).optional()};
 }
 
-/// Of a filter that can read its first input as a stream, if no other input is wired: a scan file that is read piece by
-/// piece and never in memory as a whole.
+/// For filters that can stream their first input if no other input is wired: the scan file is read piece by piece and
+/// never held in memory as a whole.
 struct StreamSpec {
     /// Parameters that must have a value, that is neither be omitted nor be their word.
     std::vector<std::string> given;
@@ -75,7 +75,7 @@ struct StreamSpec {
 };
 constexpr auto fields(const StreamSpec*) { return std::tuple{field("given", &StreamSpec::given)}; }
 
-/// Of a filter that measures a value by its truth: the names of these two inputs.
+/// For filters that compare a value with its truth: the names of these two inputs.
 struct MeasureSpec {
     std::string value, truth;
 

@@ -59,7 +59,7 @@ struct KindInfo {
     std::string_view json_member;
     void (*to_json)(const void* object, nlohmann::ordered_json& document);
     std::shared_ptr<void> (*from_json)(const nlohmann::ordered_json& document, const OnWarning& warn);
-    nlohmann::ordered_json (*schema)();  ///< of its documents; null without a JSON form
+    nlohmann::ordered_json (*schema)();  ///< schema of its documents; null without a JSON form
 };
 
 /// Identifies one kind. Kinds are equal if their names are.

@@ -45,7 +45,7 @@ template <>
 struct KindTraits<ProbePlan> : HasDocument<ProbePlan, ProbePlan> {
     static constexpr std::string_view name = "probes";
     static constexpr bool is_geometric = true;
-    /// Of the reference points.
+    /// The box of the reference points.
     static RobustBox box(const ProbePlan& plan) { return bounding_box(touch_points(plan)); }
     static double spacing(const ProbePlan& plan) { return point_spacing(touch_points(plan)); }
 

@@ -12,7 +12,7 @@
 
 namespace scanmill {
 
-/// Of a filter's module.
+/// What a filter's module declares.
 struct Manifest {
     std::string abi;
     FilterSpec spec;
@@ -41,7 +41,7 @@ constexpr auto fields(const FormatSpec*) {
                       field("writes", &T::writes), field("reads", &T::reads)};
 }
 
-/// Of a file format's module.
+/// What a file format's module declares.
 struct FormatManifest {
     std::string abi;
     FormatSpec spec;

@@ -380,7 +380,7 @@ struct FieldsForm {
                 if ((field.applies != nullptr) == is_conditional) read_member(field, json, object);
             });
     }
-    /// Of all members, after those that are `known`.
+    /// Appends the names of all members to `known`.
     static std::vector<std::string_view> names(std::vector<std::string_view> known = {}) {
         for_each_field<T>([&](const auto& field) {
             using Member = MemberOf<decltype(field)>;

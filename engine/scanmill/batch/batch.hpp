@@ -119,7 +119,7 @@ struct CheckedBatch {
     /// all scans of a part at once; they must agree on the files of the other inputs, and are measured if they agree on
     /// the truth. A workflow without inputs runs once.
     std::vector<BatchPart> parts;
-    /// Of the batch file, then of each workflow that could be read, over all the values it is run with.
+    /// Problems of the batch file, then of each readable workflow, checked with all values that it is run with.
     std::vector<Diagnostics> diagnostics;
 
     /// With errors no part must be run.

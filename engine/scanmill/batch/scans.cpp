@@ -89,7 +89,7 @@ private:
 
     static bool is_hidden(const fs::path& entry) { return entry.filename().native().starts_with('.'); }
 
-    /// Of the entry itself, not of what a link leads to.
+    /// The type of the entry itself: links are not followed.
     fs::file_type own_type(const fs::path& path) {
         std::error_code trouble;
         const fs::file_type type = fs::symlink_status(path, trouble).type();

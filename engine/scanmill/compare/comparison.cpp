@@ -54,7 +54,7 @@ public:
             by_key_.emplace(keys_.back(), &cell);
         }
     }
-    /// Of the cell with this index in the run.
+    /// The key of the cell with this index in the run.
     const CellKey& key(std::size_t cell) const { return keys_[cell]; }
     const CellRecord* find(const CellKey& key) const {
         const auto found = by_key_.find(key);
@@ -102,7 +102,7 @@ double cost_of(const CostRecord& pass, std::string_view cost) {
 }
 constexpr std::array<std::string_view, 3> all_costs{"seconds", "cpu-seconds", "memory"};
 
-/// Of every pass, without unknown ones.
+/// The known costs, one per pass.
 std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_view cost) {
     std::vector<double> costs;
     for (const CostRecord& pass : passes)

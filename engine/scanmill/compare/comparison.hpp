@@ -19,8 +19,8 @@
 
 namespace scanmill {
 
-/// Of a cell: the first that fits. Of a run: regressed if a cell is, else missing, failed, doubtful, new without an
-/// accepted run, improved, passed.
+/// A cell gets the first verdict that applies. A run gets the first of these that any of its cells has: regressed,
+/// missing, failed, doubtful, new (no accepted run), improved, passed.
 enum class Verdict {
     failed,     ///< it failed, or a rule cannot be applied to it
     missing,    ///< the accepted run has the cell; in this run it is absent or did not run

@@ -56,7 +56,7 @@ enum class CostKind {
 struct CostJudgement {
     double before = 0, now = 0;  ///< medians
     bool is_worse = false, is_better = false;
-    /// Of the ranks, for the direction of the difference; nothing where the sizes alone decided.
+    /// Result of the rank test in the direction of the difference; empty where the sizes alone decided.
     std::optional<double> probability;
 };
 

@@ -18,7 +18,7 @@ namespace scanmill {
 
 /// Indented JSON with a trailing newline; equal filters give equal bytes.
 std::string workflow_schema(const FilterLibrary& library);
-/// Of a batch, whose `measure` takes the parameters of the filters that measure.
+/// Schema of batch files; `measure` accepts the parameters of the measuring filters.
 std::string batch_schema(const FilterLibrary& library);
 
 }  // namespace scanmill

@@ -44,7 +44,7 @@ double number_amount(std::string_view text) {
     return amount;
 }
 
-/// Of a text without a sign, in the metric's unit.
+/// Parses an amount without a sign; returns it in the metric's unit.
 double absolute_amount(std::string_view text, Unit unit, const LengthScale& scale) {
     if (const int power = power_of_length(unit); power > 0) return length_amount(text, power, scale);
     if (unit == Unit::angle) return Angle::parse(text).in_radians();

@@ -60,7 +60,7 @@ inline bool is_measurement(std::string_view label) { return label.starts_with(me
 
 /// `seconds`, `cpu-seconds` and `memory`.
 bool is_cost(std::string_view metric);
-/// Of a rule for a cost. Throws Error for everything but a positive share with a plus sign: `+20 %`.
+/// Parses the rule for a cost: a positive share with a plus sign, `+20 %`. Throws Error for anything else.
 Tolerance parse_cost_tolerance(std::string_view text);
 
 }  // namespace scanmill

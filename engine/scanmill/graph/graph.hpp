@@ -32,7 +32,7 @@ struct ScanFile {
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
-    /// Of a scan: its own files for the workflow's other inputs.
+    /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
 };
 

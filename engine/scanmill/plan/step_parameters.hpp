@@ -28,7 +28,7 @@ struct ParameterSources {
     std::string workflow;  ///< the file
     const Settings& settings;
     Diagnostics& diagnostics;
-    /// Of the batch that contains the settings; nullptr for settings of the command line.
+    /// Problems of the batch that contains the settings; nullptr for settings from the command line.
     Diagnostics* settings_diagnostics;
 };
 

@@ -70,7 +70,7 @@ public:
     /// Revokes the newest valid acceptance of the batch, so that the one before it holds again. Throws Error if there
     /// is none.
     void revoke(const std::string& batch, const std::string& who, const std::string& why);
-    /// Of all batches, with revoked ones, in the order in which they were made.
+    /// The acceptances of all batches, including revoked ones, oldest first.
     std::vector<Acceptance> acceptances() const;
     /// The run that was accepted last for this batch, and not revoked.
     std::optional<Acceptance> baseline(const std::string& batch) const;

@@ -251,7 +251,7 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
     return read_binary(file.bytes, options);
 }
 
-/// Of length 1; zero for a triangle without area or with coordinates that are not finite.
+/// The unit normal; zero for a triangle without area or with coordinates that are not finite.
 Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     Vec3 u = b - a, v = c - a;
     // Scaled first: the cross product of tiny or huge edges would leave the range of double.

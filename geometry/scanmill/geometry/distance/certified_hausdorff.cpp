@@ -193,7 +193,7 @@ u64 refine(Search& search, u64 most, Execution& execution) {
     return taken;
 }
 
-/// Of the vertices that triangles use.
+/// Extent of the vertices that triangles use.
 struct Extent {
     double diagonal, rounding;
 };

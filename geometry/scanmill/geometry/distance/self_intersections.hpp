@@ -12,7 +12,7 @@
 namespace scanmill {
 
 struct SelfIntersections {
-    /// Of all pairs.
+    /// Number of all pairs.
     u64 count = 0;
     /// Rows of triangles, the smaller first; in ascending order.
     Array<std::array<u32, 2>> pairs;

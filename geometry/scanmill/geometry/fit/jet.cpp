@@ -12,7 +12,7 @@ namespace scanmill {
 namespace {
 
 constexpr Eigen::Index coefficients = 6;
-/// Of the least to the largest pivot. Points on a conic leave 1e-16; the vertices of a strip of 1 : 100 about 1e-3.
+/// Least ratio of the smallest to the largest pivot. Points on a conic give 1e-16; a strip of 1 : 100 about 1e-3.
 constexpr double least_pivot = 1e-7;
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t fewest_samples = 6;
 constexpr double most_deviations = 3;
-/// Of the squared width over the squared length: a neighbourhood narrower than about 1/30 shows a curve, not a surface.
+/// Least ratio of squared width to squared length: a neighbourhood narrower than about 1/30 shows only a curve.
 constexpr double least_flatness = 1e-3;
 
 /// Expresses the offsets from the point `origin` in the frame of the plane.

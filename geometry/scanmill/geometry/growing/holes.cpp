@@ -24,8 +24,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// most that callers offer as a parameter; the others keep the number of attempts (edges⁴ and edges⁵) below the cost of
 /// the longest loop.
 constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
-/// Of 172 degrees. The sides of a cone of half angle 12 differ by 156, and a triangulation over its tip divides that
-/// unevenly. The rest to 180 keeps rounding from putting triangles on each other.
+/// Cosine of 172 degrees. The sides of a cone of half angle 12 differ by 156, and a triangulation over its tip divides
+/// that unevenly. The remaining 8 degrees keep rounding from putting triangles on each other.
 constexpr double tip_cosine = -0.9902680687415704;
 /// Least mean cosine between the normals of the triangulation and of the triangles around the loop. The sides of a tip
 /// face the same way as its lid. Around a narrow strip along a fold, open on all sides, the triangles face away from a

@@ -20,7 +20,7 @@ std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const
 
 struct LoopShape {
     double length = 0;
-    /// Of the loop projected along the mean normal of its facets; positive if counter-clockwise.
+    /// Area of the loop projected along the mean normal of its facets; positive if counter-clockwise.
     double area = 0;
     /// False if the area does not decide between outer boundary and hole: the mean of the facets' unit normals,
     /// weighted by the lengths of the half-edges, is shorter than a tenth (a loop around a cylinder), or the area is

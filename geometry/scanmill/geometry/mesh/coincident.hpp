@@ -12,7 +12,7 @@ namespace scanmill {
 /// By vertex: the lowest one at the same position, exactly. Pre: no NaN. Cost: O(n).
 Array<u32> lowest_at_position(std::span<const Vec3> positions);
 
-/// Of a mesh's half-edges `boundary` those whose two positions are also those of another one: the surface is cut there.
+/// The half-edges in `boundary` whose two end positions are also those of another one: the surface is cut there.
 /// In their order. Cost: O(n log n).
 std::vector<u32> coincident_edges(const TriangleMesh& mesh, std::span<const u32> boundary);
 

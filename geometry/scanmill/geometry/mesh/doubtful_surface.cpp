@@ -60,7 +60,7 @@ double rough_share(const TriangleMesh& mesh) {
 std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise) {
     std::vector<std::string> doubts;
     if (noise > 0) {
-        // Of an equilateral triangle with edge a, the normal turns by noise / (a / sqrt(2)) about any axis.
+        // The normal of an equilateral triangle with edge a turns by noise / (a / sqrt(2)) about any axis.
         const double edge = edge_spacing(mesh), degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
         if (degrees > doubtful_turn)
             doubts.push_back(fmt::format(

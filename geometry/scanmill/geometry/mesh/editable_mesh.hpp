@@ -98,7 +98,7 @@ private:
     Array<u32> opposite_;  ///< by half-edge
     Array<u32> first_;  ///< by vertex
     std::size_t triangles_ = 0;
-    /// Of one edit: the half-edges outside the ring, and the new half-edges by the positions of their ends.
+    /// Scratch of one edit: the half-edges outside the ring, and the new half-edges by the positions of their ends.
     std::vector<u32> outside_, rows_, by_ends_;
 };
 

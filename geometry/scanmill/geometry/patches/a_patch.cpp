@@ -240,7 +240,7 @@ std::optional<u32> PatchSurface::locate(const Vec3& point) const {
 u32 PatchSurface::active(u32 tet, const Vec3& point) const {
     const u32 partner = patches_.partners[tet];
     if (partner == PatchComplex::no_partner) return tet;
-    // Of equal ones the first row.
+    // If both are equal, the first row holds.
     const u32 first = std::min(tet, partner), second = std::max(tet, partner);
     const double one = cell(first).value(point), other = cell(second).value(point);
     return (patches_.combine[tet] == Combine::max ? other > one : other < one) ? second : first;

@@ -114,7 +114,7 @@ public:
     std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
 
 private:
-    /// Of a tetrahedron and its partner, the one whose function holds at the point.
+    /// Chooses between a tetrahedron and its partner the one whose function holds at the point.
     u32 active(u32 tet, const Vec3& point) const;
     /// The function near a point.
     struct Local {

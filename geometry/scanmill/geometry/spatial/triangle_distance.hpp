@@ -18,7 +18,7 @@ namespace scanmill {
 /// edges and of the face, in coordinates along the longest edge and perpendicular to it.
 Vec3 nearest_on_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Of the segment a b. Pre and post as above.
+/// The point of segment a b nearest to `point`. Pre and post as above.
 Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b);
 
 }  // namespace scanmill

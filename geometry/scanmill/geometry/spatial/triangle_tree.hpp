@@ -68,7 +68,7 @@ private:
     static constexpr std::size_t arity = 4;
     static constexpr unsigned deepest = 16;  ///< 4^16 leaves hold any u32
     struct Node {
-        /// Of the four children: low.x, low.y, low.z, high.x, high.y, high.z. Empty ones: low infinite, high minus it.
+        /// Boxes of the children: low.x, low.y, low.z, high.x, high.y, high.z. Empty: low infinite, high -infinite.
         alignas(16) float bounds[6][arity];
     };
 

@@ -20,7 +20,7 @@ inline bool is_floating(ScalarType type) { return type >= ScalarType::float32; }
 struct PlyProperty {
     std::string name;
     ScalarType type;
-    /// Of a list: the type of its length, an integer.
+    /// Lists only: the type of the length, an integer.
     std::optional<ScalarType> count_type;
 
     bool is_list() const { return count_type.has_value(); }
@@ -66,12 +66,12 @@ struct PlyLists {
 /// The destination of one property's numbers. Without a destination and lists they are skipped.
 struct PlySlot {
     const PlyProperty* property = nullptr;
-    /// Of a scalar: the number of row r is stored at destination + r × stride,
+    /// Scalars only: the number of row r is stored at destination + r × stride,
     std::byte* destination = nullptr;
     std::size_t stride = 0;
     /// as a double instead of in its own type.
     bool widened = false;
-    /// Of a list.
+    /// Lists only.
     PlyLists* lists = nullptr;
 };
 
