@@ -20,7 +20,7 @@ struct APatchParams {
         /// the surface passes near them, see normal_fit.hpp
         automatic,
         given,  ///< the mesh's face column `corner-normals`; of several without a sharp edge between them the mean
-        points,  ///< of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
+        points,  ///< normal of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
         mesh  ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
     };
     Normals normals = Normals::automatic;
@@ -55,12 +55,12 @@ struct APatchResult {
     std::size_t left_out = 0;  ///< points in no tetrahedron
     struct Distances {
         double rms = 0, p95 = 0, max = 0;
-        double rms_to_mesh = 0;  ///< of the same points from `mesh`
+        double rms_to_mesh = 0;  ///< distance of the same points from `mesh`
     };
-    std::optional<Distances> fit;  ///< of the points in tetrahedra, if there are any
+    std::optional<Distances> fit;  ///< distances of the points in tetrahedra; empty without points
     std::optional<double> regularisation;  ///< the median of the weights used, if the surface is fitted or made fair
     double crease_max = 0;  ///< the largest distance of a crease from its sharp edge
-    double unfairness_before = 0, unfairness_after = 0;  ///< of the default, and of the result; see fit.hpp
+    double unfairness_before = 0, unfairness_after = 0;  ///< unfairness by default, and of the result; see fit.hpp
 };
 
 /// The surface F = 0 through the mesh's vertices, with a gradient of length 1 there, along the normal. F is negative

@@ -10,9 +10,9 @@ namespace scanmill::a_patches {
 
 namespace {
 
-constexpr double accuracy = 1e-8;  // of the solution, in the norm of the matrix
+constexpr double accuracy = 1e-8;  // relative error of the solution, in the norm of the matrix
 constexpr int most_steps = 2000;
-constexpr double worthwhile = 1e-3;  // of the squared change that the data ask for, that a larger weight must gain
+constexpr double worthwhile = 1e-3;  // share of the squared change in the data's norm that a larger weight must gain
 constexpr double most_times = 10;  // the geometric mean, roughly, that a row counts
 constexpr double enough_points = 2000;  // to choose a weight
 

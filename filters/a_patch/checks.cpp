@@ -32,8 +32,8 @@ public:
     }
 
 private:
-    static constexpr int steps = 16, parts = 32;  // of a line, and between two apexes
-    static constexpr double rounding = 1e-12;  // of the largest weight
+    static constexpr int steps = 16, parts = 32;  // samples of a line, and lines between two apexes
+    static constexpr double rounding = 1e-12;  // share of the largest weight
     /// Shares of an edge, from either end, at which lines are sampled: creases deviate most near the ends.
     static constexpr std::array shares = {0.001, 0.003, 0.01, 0.02, 0.04, 0.08, 0.12, 0.17,
                                           0.21,  0.25,  0.29, 0.33, 0.37, 0.42, 0.46, 0.5};

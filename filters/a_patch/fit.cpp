@@ -27,10 +27,10 @@ constexpr int rounds = 3;
 constexpr double most_regularisation = 200;
 constexpr double at_vertex = 1e-9;  // barycentric
 constexpr double least_gradient = 0.5;  // a point where F is flatter is not near the surface
-constexpr double least_share = 0.1;   // of an edge's value at an apex, that is kept
+constexpr double least_share = 0.1;   // least share of an edge's value at an apex that is kept
 constexpr int most_sweeps = 200;
 constexpr double relaxation = 1.5;  // a third of the sweeps that 1 needs
-constexpr double enough = 1e-6;  // of the largest change in a sweep, as a share of the slopes' length
+constexpr double enough = 1e-6;  // largest change in the last sweep, as a share of the slopes' length
 constexpr double smaller = 0.6;
 constexpr int most_reductions = 20;
 

@@ -19,8 +19,8 @@ namespace scanmill::a_patches {
 /// Points with the tetrahedra they are in, ordered by tetrahedron, then as given.
 struct LocatedPoints {
     struct Point {
-        u32 row;  ///< of the points given
-        u32 tet;  ///< of two functions, the one that is F there
+        u32 row;  ///< row among the given points
+        u32 tet;  ///< if two functions exist, the one that is F there
         Barycentric at;
     };
     std::vector<Point> points;

@@ -18,9 +18,9 @@ constexpr double share_of_radius = 0.15;  // added to a height
 constexpr double low_factor = 1.05, low_share = 0.02;  // the least height that an apex is lowered to
 constexpr double higher_factor = 1.4, higher_share = 0.05;
 constexpr int most_rounds = 12;
-constexpr double share_of_gap = 0.45;  // of the distance to the next sheet
+constexpr double share_of_gap = 0.45;  // share of the distance to the next sheet
 constexpr double least_sine = 0.1;  // between two undivided triangles
-constexpr double most_change = 0.1;  // of an edge's gradient, whose length is 1
+constexpr double most_change = 0.1;  // largest change of an edge's gradient, whose length is 1
 constexpr double most_cosine_of_straight = 1e-12;  // rounding: between an edge and normals perpendicular to it
 constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
 constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
@@ -115,7 +115,7 @@ public:
         const TriangleTree tree(hull_.positions, hull_.triangles, execution_.threads());
         limit_heights(tree);
         open_gaps();
-        limit_heights(tree);  // of those that were raised
+        limit_heights(tree);  // only those that were raised
         find_faults();
         return std::move(hull_);
     }

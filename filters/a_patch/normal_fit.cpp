@@ -23,7 +23,7 @@ constexpr std::size_t rows_at_once = 256;  // triangles
 constexpr int rounds = 3;
 constexpr std::array<double, 6> weights{1e-3, 1e-2, 0.1, 1, 10, 100};
 constexpr double at_vertex = 1e-9;  // barycentric
-constexpr double least_gradient = 0.5;  // of the mean of three unit vectors
+constexpr double least_gradient = 0.5;  // least length of the mean of three unit vectors
 constexpr int most_halvings = 30;
 
 class NormalFitter {

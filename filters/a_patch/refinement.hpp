@@ -16,7 +16,7 @@ std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 
 /// Where the vertex that bisects an edge is.
 enum class Middle {
-    of_curve,   ///< of the cubic that bisect() describes
+    of_curve,   ///< middle of the cubic that bisect() describes
     of_segment  ///< between the ends, with the normals of the triangles
 };
 

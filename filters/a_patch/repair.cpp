@@ -16,7 +16,7 @@ namespace {
 constexpr double cosine_of_fold = 0.8660254037844386;  // of 30 degrees
 constexpr double level_sine = 1e-3, level_share = 0.1;  // between a normal and a sharp edge; of that beyond the edge
 constexpr double cosine_of_level = 0.9993908270190958;  // of 2 degrees
-constexpr double least_length = 0.1;  // of a sum or product of unit vectors that gives a direction
+constexpr double least_length = 0.1;  // least length of a sum or product of unit vectors that gives a direction
 
 void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
     for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;

@@ -54,7 +54,7 @@ private:
     /// By edge: what a change of 1 of the components adds to f(a, b, X) at two points: the base point and the apex;
     /// beside an edge the two apexes for that edge, the triangle's apex for the others.
     std::array<std::array<Eigen::Vector2d, 2>, most_edges> unit_;
-    std::array<double, 3> shares_{};  ///< of the base point: at i, j, the third corner
+    std::array<double, 3> shares_{};  ///< coordinates of the base point: at i, j, the third corner
     std::array<std::array<double, 3>, 2> of_x_{};  ///< the edge point in both triangles' tetrahedra, likewise
 };
 

@@ -15,9 +15,9 @@ namespace {
 using Vector4 = Eigen::Vector4d;
 
 constexpr std::size_t chunk = 1024;  // faces or edges
-constexpr double least_share = 0.1;  // of a value at an apex, that is kept at the edge points
+constexpr double least_share = 0.1;  // least share of an apex's value that the edge points keep
 constexpr double least_share_of_edge = 0.2;
-constexpr double rounding = 1e-15;  // of the largest weight: at singular points weights are 0
+constexpr double rounding = 1e-15;  // share of the largest weight: at singular points weights are 0
 
 /// One side of a face. An affine function on its tetrahedron is given by its values at the three corners and the apex.
 struct FaceSide {
@@ -257,7 +257,7 @@ private:
         const double sign = sign_of(side);
         const std::size_t first = row_of_edge_[e] + (side == outside && has_edge_point(e, inside) ? tets_per_side : 0);
         const std::array<u32, 2> faces{edge.first, edge.second};
-        std::array<std::size_t, 2> corner, number;  // of the face: of the edge's a, and of the edge
+        std::array<std::size_t, 2> corner, number;  // by face: its corner at the edge's a, and its number of the edge
         for (std::size_t of = 0; of < 2; ++of) {
             number[of] = hull_.number_in(static_cast<u32>(e), faces[of]);
             corner[of] = of == 0 ? number[of] : next(number[of]);
@@ -309,7 +309,7 @@ private:
     /// The quadric of a face's side, as it continues beyond the edge with this number: its polar form is the mean of
     /// those with value and gradient of the edge's ends.
     struct Continuation {
-        std::array<Vec3, 2> ends, normals;  ///< of the corner where the edge begins, and of the next one
+        std::array<Vec3, 2> ends, normals;  ///< at the corner where the edge begins, and at the next one
         Eigen::Matrix3d curvature;
 
         double polar(const Vec3& x, const Vec3& y) const {
@@ -440,7 +440,7 @@ private:
     std::size_t first_apex_ = 0, first_edge_point_ = 0, tets_of_faces_ = 0;
     std::vector<u32> base_;
     std::vector<std::array<u32, 2>> edge_point_;  ///< by edge and Side
-    std::vector<std::size_t> first_row_, row_of_edge_;  ///< of a face's and of an edge's tetrahedra
+    std::vector<std::size_t> first_row_, row_of_edge_;  ///< first row of each face's and of each edge's tetrahedra
     Array<Vec3> positions_;
     Array<std::array<u32, 4>> tets_;
     Array<PatchWeights> weights_;

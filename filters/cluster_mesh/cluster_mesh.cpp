@@ -435,7 +435,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     constexpr std::size_t few_edges = 4;
     result.closed_holes = growing::close_small_holes(surface, few_edges, context, result.max_edge);
     result.removed_triangles += growing::remove_extra_fans(surface);
-    const double largest_radius = 1 / std::sqrt(3.0);  // of an equilateral triangle with edges of max_edge
+    const double largest_radius = 1 / std::sqrt(3.0);  // circumradius of an equilateral triangle with edges of max_edge
     const growing::NarrowHoles narrow =
         growing::close_narrow_holes(surface, {largest_radius, few_edges, std::numbers::pi, result.max_edge}, context);
     result.closed_holes += narrow.closed;

@@ -23,7 +23,7 @@ using growing::Surface;
 /// Limits of every triangle. Angles are stored as the sines and cosines that are compared.
 struct Limits {
     double edge_share;  ///< of max_edge: edges are shorter
-    double least_sine;  ///< of the triangle's smallest angle
+    double least_sine;  ///< sine of the triangle's smallest angle
     double joint_cosine;  ///< least, between the normals of triangles that share an edge other than a winner edge
     double point_cosine;  ///< least, between the normals of the triangle and of its points
     double sharp_cosine;  ///< the same for points at edges

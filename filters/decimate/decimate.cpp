@@ -116,7 +116,7 @@ Buffer<Vec3> data_positions(const PointCloud& points, const Frame& frame) {
 
 /// The vertices of the result: numbers, and class.
 struct Kept {
-    Array<u32> vertices;  ///< of the input, ascending
+    Array<u32> vertices;  ///< rows of the input's vertices, ascending
     Array<u32> numbers;  ///< by vertex of the input
 };
 

@@ -29,7 +29,7 @@ bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Ve
         const double share = errors.share_of(limits.error);
         return share * share;
     };
-    SignedErrors face;  // of the last triangle
+    SignedErrors face;  // errors of the last triangle
     const auto triangle_cost = [&](u32 i, u32 k, u32 j) {
         const Vec3 &a = corners[i].position, &b = corners[k].position, &c = corners[j].position;
         const Vec3 ab = b - a, ac = c - a;

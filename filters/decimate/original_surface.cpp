@@ -16,7 +16,7 @@ bool OriginalSurface::add_path(u32 from, u32 to, const Vec3& up, const SignedErr
     const Vec3 sideways = up.cross(along);
     struct End {
         u32 vertex;
-        double side;  ///< of the plane: negative on the right
+        double side;  ///< side of the plane: negative on the right
     };
     const auto at = [&](u32 vertex) { return End{vertex, sideways.dot(position(vertex) - begin)}; };
     const auto crossing = [&](const End& right, const End& left) {

@@ -62,7 +62,7 @@ private:
     HoleTriangulator triangulator_;
     std::vector<HoleTriangle> triangles_;
     std::vector<u32> ring_, star_;  ///< vertices; half-edges from the vertex
-    std::vector<BoundingBox> boxes_;  ///< of the planned triangles
+    std::vector<BoundingBox> boxes_;  ///< boxes of the planned triangles
     std::vector<u32> outside_;  ///< half-edges outside the hole's edges
     Side sides_[2];
     std::size_t side_count_ = 0;

@@ -21,8 +21,8 @@ namespace scanmill {
 
 namespace {
 
-constexpr double doubtful_share = 0.05;  // of the whole area, filled
-constexpr double most_filled = 0.5;  // of the whole area: otherwise the mesh does not determine a solid
+constexpr double doubtful_share = 0.05;  // filled share of the whole area
+constexpr double most_filled = 0.5;  // share of the whole area: above it the mesh does not determine a solid
 
 void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
     if (params.max_edges && *params.max_edges < 3)

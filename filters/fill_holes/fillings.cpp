@@ -109,7 +109,7 @@ Conflicts::Nearby Conflicts::nearby(const TriangleTree& others, const Execution&
 
 void Conflicts::avoid(std::vector<Hole>& holes, const Execution& execution) const {
     std::vector<u32> waiting;
-    Array<Vec3> corners;  // of the loops' boxes, which are those of triangles with these corners
+    Array<Vec3> corners;  // corners of the loops' boxes; `boxes` holds them as triangles
     Array<Triangle> boxes;
     for (u32 i = 0; i < holes.size(); ++i) {
         if (!is_to_avoid(holes[i])) continue;

@@ -92,7 +92,7 @@ Cutout::Cutout(const TriangleMesh& mesh, const MeshLoops& boundary, std::span<co
         part.opposite[h] = other == half_edges::boundary ? other : local(other);
     }
     part.before_on_boundary.assign(count, half_edges::boundary);
-    DisjointSets corners(count);  // of one vertex
+    DisjointSets corners(count);  // corners joined at one vertex
     for (u32 h = 0; h < count; ++h) {
         if (part.opposite[h] != half_edges::boundary) {
             corners.unite(h, half_edges::after(part.opposite[h]));

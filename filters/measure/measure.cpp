@@ -30,7 +30,7 @@ double rounding_within(const BoundingBox& one, const BoundingBox& other) {
 /// Distances from one surface's samples and vertices to the other.
 struct Direction {
     SurfaceSamples samples;
-    NearestDistances nearest;   ///< of the samples
+    NearestDistances nearest;   ///< distances of the samples
     NearestDistances vertices;  ///< by vertex
     DistanceNumbers numbers;
 };

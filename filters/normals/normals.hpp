@@ -16,8 +16,8 @@ namespace scanmill {
 
 struct NormalsParams {
     enum class Method {
-        pca,  ///< of the plane that fits the point and its neighbours best
-        jet   ///< of the polynomial of degree two that fits them best (see jet.hpp), at the point
+        pca,  ///< normal of the plane that best fits the point and its neighbours
+        jet   ///< normal at the point of the polynomial of degree two that fits them best (see jet.hpp)
     };
     Method method = Method::pca;
     /// Number of nearest other positions, from 2 to 1000; all others if there are fewer. The point itself counts in

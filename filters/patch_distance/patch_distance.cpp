@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t chunk = 1024;
 constexpr const char* column_name = "distance-to-patches";
-constexpr u32 subdivision = 2;  // of the mesh on which the search begins
-constexpr double farthest = 0.1;  // of the diagonal
+constexpr u32 subdivision = 2;  // subdivision of the mesh on which the search begins
+constexpr double farthest = 0.1;  // share of the diagonal
 constexpr double rounding = 1e-12;
 
 /// The vertices and edges at which the surface ends.

@@ -17,7 +17,7 @@ using Vec2 = Eigen::Vector2d;
 
 struct Rectangle {
     std::array<Vec2, 4> corners;  ///< counter-clockwise
-    double residual = 0;  ///< of the points at the border from the sides, root mean square
+    double residual = 0;  ///< root mean square distance of the border points from the sides
     /// Found mean lengths of the sides from the first to the second corner, and from the second to the third.
     double first_side = 0, second_side = 0;
 };

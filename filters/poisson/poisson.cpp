@@ -37,9 +37,9 @@ constexpr u32 least_depth = 3, most_depth = 12;
 constexpr int full_depth = 5;  // PCL divides its octree no earlier
 constexpr double most_scale = 10;
 constexpr std::size_t neighbours = 8;
-constexpr double far_factor = 2;  // of the distance to the 8th neighbour
+constexpr double far_factor = 2;  // times the distance to the 8th neighbour
 constexpr double doubtful_share = 0.05;
-constexpr double least_flatness = 1e-12;  // of points that are not on one line
+constexpr double least_flatness = 1e-12;  // for points that are not on one line
 constexpr u32 most_crack_edges = 12;  // loops with more are where the surface leaves the octree's cube
 constexpr std::size_t chunk = 1 << 10;
 

@@ -11,7 +11,7 @@
 namespace scanmill::probing {
 
 struct EdgeFaces {
-    Vec3 position;  ///< of the edge, nearest to the point
+    Vec3 position;  ///< position on the edge, nearest to the point
     Vec3 tangent, left_normal, right_normal;  ///< unit vectors, the normals perpendicular to the tangent
 };
 

@@ -38,7 +38,7 @@ struct Settings {
     Probe probe;
     double error, spacing, retract;
     std::optional<double> approach;
-    double least_cosine;  ///< of the tilt
+    double least_cosine;  ///< cosine of the largest tilt
     bool two_directions;
     LineChoice lines;
 };

@@ -37,7 +37,7 @@ struct ReferencePoint {
 /// Reference points that follow one another along a line; all of it, or a part between left-out ones.
 struct Chain {
     bool closed;
-    u32 begin, end;  ///< of the points
+    u32 begin, end;  ///< range of its points
 };
 
 struct ReferencePoints {

@@ -87,7 +87,7 @@ void propagate_signs(const Neighbourhoods& neighbourhoods, std::vector<bool> kno
 /// direction across the line either.
 bool lies_in_surface(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point, const Vec3& given,
                      const Vec3& principal) {
-    constexpr double least_cosine = 0.5;  // of the 60 degrees that the messages name
+    constexpr double least_cosine = 0.5;  // cosine of the 60 degrees that the messages name
     constexpr double least_share = 0.25;  // a normal tilted by that in an even neighbourhood has 3/8
     if (std::abs(given.dot(principal)) >= least_cosine) return false;
     double along = 0, whole = 0;

@@ -17,7 +17,7 @@ enum class Score : u8 { circumradius, midpoint };
 
 /// Limits of a new triangle. Angles are stored as the sines and cosines that are compared.
 struct Limits {
-    double least_sine;  ///< of the triangle's smallest angle
+    double least_sine;  ///< sine of the triangle's smallest angle
     double normal_cosine;  ///< least, between the normals of the triangle and of every triangle that shares an edge
     double touch_cosine;  ///< least, to the mean normal of the triangles that share nothing but the new point
     double point_cosine;  ///< least, between the normals of the triangle and of its points

@@ -26,7 +26,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr double doubtful_share = 0.05;  // of the area, removed
+constexpr double doubtful_share = 0.05;  // removed share of the area
 
 double area_of(std::span<const Vec3> positions, const Triangle& triangle) {
     const auto& [a, b, c] = triangle;
@@ -406,7 +406,7 @@ private:
         Array<Number> values(old.begin(), old.end());
         for (std::size_t t = 0; t < triangles_.size(); ++t) {
             const Triangle& input = mesh_.triangles[rows_[t]];
-            std::array<std::size_t, 3> corners;  // of the input
+            std::array<std::size_t, 3> corners;  // by corner: its number in the input's triangle
             for (std::size_t i = 0; i < 3; ++i)
                 corners[i] = static_cast<std::size_t>(
                     std::ranges::find(input, source_[triangles_[t][i]], [&](u32 v) { return joined_[v]; }) -

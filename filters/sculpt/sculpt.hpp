@@ -65,7 +65,7 @@ struct SculptResult {
     Array<u32> blocked_points, deep_points;
     /// Vertices in no cell of the solid, as in the input.
     std::size_t outside_points = 0;
-    double noise = 0;  ///< of the boundary, by vertex_noise()
+    double noise = 0;  ///< noise of the boundary, by vertex_noise()
 };
 
 /// Sculpts the labelled cells.

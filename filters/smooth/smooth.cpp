@@ -19,13 +19,13 @@ namespace {
 
 using Method = SmoothParams::Method;
 
-constexpr double doubtful_error = 0.25;  // of the fits, as a share of the neighbourhood; about 0.5 in a filled ball
+constexpr double doubtful_error = 0.25;  // fit error as a share of the neighbourhood; about 0.5 in a filled ball
 constexpr std::size_t chunk = 1 << 10;
 
 /// By position of the tree.
 struct Moves {
     Array<Vec3> offsets;
-    Array<double> errors;  ///< of the polynomials, see Jet::error
+    Array<double> errors;  ///< fit errors of the polynomials, see Jet::error
     std::vector<u8> flat;
 };
 

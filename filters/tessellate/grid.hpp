@@ -20,7 +20,7 @@ struct Row {
 struct Grid {
     unsigned segments = 1, rows = 1;
     bool is_triangular = false;  ///< instead an undivided triangle has a triangular grid
-    std::vector<double> shares;  ///< of the rows, between the base point and the edges; and one for the edges
+    std::vector<double> shares;  ///< rows between the base point and the edges; the last one is the edges'
     std::vector<SurfacePoint> points;
     u32 first_vertex = 0;
     double worst = 0;  ///< distance found between the triangles and the surface

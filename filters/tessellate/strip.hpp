@@ -13,7 +13,7 @@ namespace scanmill::tessellation {
 
 /// A point of an edge between its ends.
 struct Sample {
-    std::array<double, 2> share;  ///< of the edge, from a and from b
+    std::array<double, 2> share;  ///< shares of the edge, from a and from b
     u8 side = 1;  ///< where the surface is
     bool is_on_surface = false;  ///< the strip has one point here
     /// There are no tetrahedra on this side: a straight line leads from face to face.
@@ -26,7 +26,7 @@ struct Sample {
 /// the first triangle to that of the second. At a sharp edge the middle column is the crease. At a border there is only
 /// the column of the first triangle. Several columns may share a point.
 struct Strip {
-    unsigned segments = 1;  ///< of the edge, but for samples where the surface crosses it
+    unsigned segments = 1;  ///< segments of the edge; more for samples where the surface crosses it
     unsigned fan = 1;  ///< columns less one
     std::vector<Sample> samples;
     std::vector<u32> numbers;  ///< of points, by sample and column
@@ -57,7 +57,7 @@ bool refine(unsigned& along, unsigned& across, const Errors& errors, double max_
 /// `distance_at` is the distance at a point.
 template <class DistanceAt>
 double distance_on_segment(const Vec3& a, const Vec3& b, DistanceAt&& distance_at) {
-    constexpr double middle_over_third = 9. / 8;  // of a quadratic function with zeros at the ends
+    constexpr double middle_over_third = 9. / 8;  // for a quadratic function with zeros at the ends
     return middle_over_third * std::max(distance_at((2 * a + b) / 3), distance_at((a + 2 * b) / 3));
 }
 

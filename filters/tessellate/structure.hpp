@@ -23,7 +23,7 @@ struct TriangleTets {
 struct EdgeTets {
     u32 a = none, b = none;
     std::array<u32, 2> triangles{none, none};
-    std::array<u32, 2> numbers{none, none};  ///< of the edge in its triangles
+    std::array<u32, 2> numbers{none, none};  ///< the edge's numbers in its triangles
     /// By side and triangle. On a side there may be none.
     std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};
     bool is_sharp = false;  ///< without tetrahedra: the gradients of the triangles' functions differ at its ends

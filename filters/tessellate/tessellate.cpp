@@ -19,8 +19,8 @@ using namespace tessellation;
 constexpr std::size_t chunk = 64;  // edges or triangles
 constexpr unsigned uniform_fan = 4, least_fan = 2;  // segments of a fan
 constexpr unsigned most_subdivision = 1024;
-constexpr double least_decrease = 0.7;  // of the error, with twice the segments
-constexpr double rounding = 1e-14;  // of the diagonal: below it a value at a point of the mesh is 0
+constexpr double least_decrease = 0.7;  // least ratio of the errors before and after the segments are doubled
+constexpr double rounding = 1e-14;  // share of the diagonal: below it a value at a point of the mesh is 0
 
 Barycentric corner(u32 i) {
     Barycentric at = Barycentric::Zero();
@@ -303,8 +303,8 @@ private:
     std::vector<Grid> grids_;
     std::vector<u32> number_of_corner_;  ///< by point of the complex
     u32 corners_ = 0;
-    std::vector<SurfacePoint> points_;  ///< of the corners and strips; at last of the grids, too
-    std::vector<std::array<Vec3, 3>> corner_normals_;  ///< of the mesh's triangles
+    std::vector<SurfacePoint> points_;  ///< points of the corners and strips; at the end of the grids, too
+    std::vector<std::array<Vec3, 3>> corner_normals_;  ///< normals at the corners of the mesh's triangles
     bool has_creases_ = false;
     struct Beyond {
         u32 triangle = none;  ///< the second triangle at a crease
@@ -312,7 +312,7 @@ private:
     };
     std::vector<Beyond> beyond_;  ///< by point
     Array<Edge> creases_;
-    u32 patch_ = 0;  ///< of the triangles that are being added
+    u32 patch_ = 0;  ///< patch of the triangles that are being added
     Array<double> out_normals_;
     Array<Triangle> out_;
     Array<u32> out_patches_;

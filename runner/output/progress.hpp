@@ -89,14 +89,14 @@ private:
     ProgressBoard board_;
     TimeLeft time_left_;  ///< its tasks: the nodes, then the outputs
     std::unordered_map<std::string, std::size_t> write_of_file_;  ///< the output's task
-    std::vector<std::size_t> cells_left_;  ///< of each task
+    std::vector<std::size_t> cells_left_;  ///< by task
     std::vector<bool> is_settled_;  ///< node: it has ended, or will not run
     bool quiet_;
     bool terminal_;
     std::size_t ended_ = 0;
     std::size_t painted_ = 0;  // lines on the terminal
     std::chrono::steady_clock::time_point begin_, last_;
-    std::optional<double> estimate_;  ///< of the time left
+    std::optional<double> estimate_;  ///< estimate of the time left
     double estimated_at_ = 0;
     std::map<std::size_t, std::vector<std::string>> doubts_;  ///< of nodes, as their cells repeat them
     std::set<std::string> printed_doubts_;

@@ -23,7 +23,7 @@ struct BadScan {
     std::string test_name;
     std::string file;
     std::string content;
-    std::vector<std::string> parts;  ///< of the message, beside the file's name
+    std::vector<std::string> parts;  ///< parts of the message, besides the file's name
 };
 
 void PrintTo(const BadScan& scan, std::ostream* stream) { *stream << scan.test_name; }

@@ -27,7 +27,7 @@ protected:
                           fmt::format("{0} 0 0\n{1} 0 0\n{0} 2 0\n{1} 2 2\n{0} 1 {0}\n", shift, shift + 1));
         }
     }
-    /// Of test-steps: `shared`, then `last` for every factor, which misbehaves by the parameter `mode`.
+    /// Two test-steps: `shared`, then `last` for every factor; `last` misbehaves as the parameter `mode` says.
     void write_workflow(const std::string& factors = "{sweep: [1, 2, 3, 4]}") {
         folder_.write("w.yaml",
                       "scanmill: 1\nname: w\ninputs: {scan: points}\nparameters: {mode: pass, first: pass}\nsteps:\n"

@@ -15,7 +15,7 @@
 namespace scanmill::test {
 
 struct GuideCommand {
-    std::size_t line;  ///< of the guide
+    std::size_t line;  ///< line in the guide
     std::string text;
     std::vector<std::string> expected;
 };

@@ -13,7 +13,7 @@ namespace scanmill::test {
 
 struct Model {
     const char* file;  ///< under build/data, or ../shared/data when it begins with a number
-    long genus;        ///< of the model: closed and in one piece
+    long genus;        ///< genus of the model, which is closed and connected
 };
 
 inline void PrintTo(const Model& model, std::ostream* stream) { *stream << model.file; }

@@ -12,7 +12,7 @@
 namespace scanmill::test {
 
 struct ProgramResult {
-    int exit_code = -1;  ///< of a normal end; -signal when a signal ended it
+    int exit_code = -1;  ///< exit code after a normal end; -signal when a signal ended it
     std::string out, err;
 };
 

@@ -58,7 +58,7 @@ struct ParameterSpec {
     std::optional<std::size_t> size;  ///< exact length of a list
     bool required = false;            ///< has no default
     std::string word;                 ///< accepted in place of a value; empty: none
-    std::optional<Bound> low, high;   ///< of the amount as written; for angles in degrees, for ratios the fraction
+    std::optional<Bound> low, high;   ///< limits of the amount as written; angles: in degrees, ratios: the fraction
     std::vector<Choice> choices;
     /// Another parameter; if it has a value, the default of this one is not used.
     std::string unless_given;

@@ -133,8 +133,8 @@ private:
     const Batch& batch_;
     const FilterLibrary& library_;
     Diagnostics& diagnostics_;
-    std::vector<const PlannedStep*> steps_;  // of all plans
-    std::map<std::string, Gated> properties_;  // of the outputs
+    std::vector<const PlannedStep*> steps_;  // steps of all plans
+    std::map<std::string, Gated> properties_;  // properties of the outputs
 };
 
 }  // namespace

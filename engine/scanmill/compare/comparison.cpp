@@ -114,7 +114,7 @@ std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_
 /// What differs between two runs of a cell before its results: files, filters, parameters.
 std::vector<std::string> causes_of(const CellRecord& cell, const StepsByNode& steps, const CellRecord& before,
                                    const StepsByNode& steps_before) {
-    using Occurrence = std::pair<std::string, std::size_t>;  // of a label in the cell
+    using Occurrence = std::pair<std::string, std::size_t>;  // label and its number in the cell
     const auto by_label = [](const CellRecord& record, const StepsByNode& all) {
         std::vector<std::pair<Occurrence, const StepRecord*>> found;
         std::map<std::string, std::size_t> seen;

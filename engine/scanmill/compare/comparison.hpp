@@ -105,7 +105,7 @@ struct CellComparison {
     std::string workflow, scan, variant;  ///< the scan from the batch's folder
     std::string outcome;                  ///< of this run; empty: it does not have the cell
     Verdict verdict = Verdict::passed;
-    std::vector<std::string> reasons;  ///< of the verdict, a sentence each
+    std::vector<std::string> reasons;  ///< reasons for the verdict, a sentence each
     std::vector<std::string> causes;   ///< what differs in its inputs and steps; only if the verdict is not passed
     std::vector<MetricChange> metrics;  ///< regressions first, then improvements, then the others; the largest first
     std::vector<OutputChange> outputs;
@@ -170,7 +170,7 @@ struct Baseline {
     RunDetails run;
     std::optional<Acceptance> acceptance;
     std::string folder;             ///< empty: the records of the compared run
-    std::vector<PastCosts> costs;  ///< of the runs since then, before the compared one, on its machine
+    std::vector<PastCosts> costs;  ///< costs of the runs since then, before the compared one, on its machine
 };
 
 /// The command that runs the cell again; `scan`: its name from the batch's folder.
@@ -188,7 +188,7 @@ struct RankedChange {
     const CostChange* cost = nullptr;
 
     Effect effect() const;
-    double share() const;       ///< of an output: infinite
+    double share() const;       ///< for an output: infinite
     double confidence() const;  ///< 1 for metrics and outputs, which have no noise; 1 - probability for costs
 };
 

@@ -44,7 +44,7 @@ struct RunRequest {
     std::map<std::string, std::vector<std::filesystem::path>> inputs;
     std::vector<std::filesystem::path> protected_files;  ///< more files that no output may replace
     std::filesystem::path output_folder;
-    LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: from the workflow or the file
+    LengthUnit unit = LengthUnit::unknown;  ///< unit of every file; unknown: from the workflow or the file
     InvalidRows invalid =
         InvalidRows::by_format;  ///< of every file of points; by_format: from the workflow or the format
     std::uint64_t seed = 0;
@@ -99,16 +99,16 @@ std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& l
 
 struct RunNode {
     std::string key;  ///< plan key: identifies the result before anything runs
-    std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name
+    std::string code;  ///< steps only: hash of filter, builds, seed and the content of files that parameters name
     std::size_t plan = 0;  ///< index into RunGraph::plans
     std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf
     LeafSource leaf;
-    bool is_scan = false;  ///< of a leaf: it feeds the workflow's first input
-    std::vector<ParameterFile> parameter_files;  ///< of a step
+    bool is_scan = false;  ///< leaves only: it feeds the workflow's first input
+    std::vector<ParameterFile> parameter_files;  ///< steps only
     bool is_uncacheable = false;  ///< it, or a node before it, reads a folder or a file that cannot be hashed
-    std::string unreadable;  ///< of a leaf: why its content could not be hashed
+    std::string unreadable;  ///< leaves only: why the content could not be hashed
     std::vector<NodeInput> inputs;
-    std::size_t scan = 0;  ///< of the first cell
+    std::size_t scan = 0;  ///< index of the first cell's scan
 };
 
 struct RunOutput {

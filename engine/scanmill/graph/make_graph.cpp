@@ -96,7 +96,7 @@ StepKeys keys_of_step(const PlannedStep& step, const std::string& module, const 
 class FileContents {
 public:
     struct Content {
-        std::string hash;  ///< of the file's bytes; unique for a file that cannot be read
+        std::string hash;  ///< hash of the file's bytes; unique for a file that cannot be read
         std::string why_unreadable;  ///< with the hint; empty: it can be read
     };
 
@@ -334,7 +334,7 @@ private:
     FileContents contents_;
     FilterLibrary& library_;
     const std::vector<GraphPart>& parts_;
-    const Plan* plan_ = nullptr;  // of the part that is being added
+    const Plan* plan_ = nullptr;  // plan of the part that is being added
     const RunRequest* request_ = nullptr;
     KeyBase base_;
     OutputFiles output_files_;

@@ -13,7 +13,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t most_variants = 10'000;
-constexpr std::size_t most_steps = 500'000;  // of all variants together: each takes time and memory, shared or not
+constexpr std::size_t most_steps = 500'000;  // in all variants together: each takes time and memory, shared or not
 
 std::string file_safe(std::string_view text) {
     std::string safe;

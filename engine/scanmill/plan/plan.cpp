@@ -178,7 +178,7 @@ private:
         std::vector<PlannedExpectation>& expectations = plan_.steps[found->second].expectations;
         for (const Expectation& written : step.syntax->expect) {
             if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
-                continue;  // of the same step in an earlier variant
+                continue;  // an earlier variant of the same step reported it
             if (auto expectation = plan_expectation(written, spec, diagnostics_))
                 expectations.push_back(std::move(*expectation));
         }

@@ -37,7 +37,7 @@ struct SessionTask {
     std::string name, file;  ///< of the workflow or the batch
     RunGraph graph;
     Limits limits;
-    Gate gate{};  ///< of the batch; its repeats without a cache
+    Gate gate{};  ///< gate of the batch; its repeats need a run without a cache
 };
 
 /// What is decided when a run starts.

@@ -85,7 +85,7 @@ struct WriteWork {
     std::vector<std::string> added_columns;  ///< those of added_columns()
     bool must_be_closed = false;             ///< the step's expectation `closed: true` holds for the file too
     JobInput value;
-    Metrics properties{};  ///< of the value; empty: not computed yet
+    Metrics properties{};  ///< the value's properties; empty: not computed yet
 };
 constexpr auto fields(const WriteWork*) {
     using R = WriteWork;
@@ -100,7 +100,7 @@ constexpr auto fields(const WriteWork*) {
 struct Job {
     std::size_t node = 0;  ///< whose values it computes, checks or writes
     std::variant<ReadWork, StepWork, ExpectWork, WriteWork> work;
-    std::string frame;  ///< of its errors; empty: none
+    std::string frame;  ///< added to its errors; empty: none
     std::string scan;
     unsigned threads = 1;
     std::uint64_t seed = 0;
@@ -181,8 +181,8 @@ struct WorkerMessage {
     bool is_ready = false;  ///< once, when the process has started
     std::optional<std::string> loading = {};  ///< the module that is being loaded; empty: it is loaded
     std::optional<double> progress = {};
-    std::optional<std::string> warning = {};  ///< of the job
-    std::optional<std::string> note = {};     ///< of the worker's cache
+    std::optional<std::string> warning = {};  ///< warning about the job
+    std::optional<std::string> note = {};     ///< note by the worker's cache
     std::optional<JobReport> report = {};
 };
 constexpr auto fields(const WorkerMessage*) {

@@ -20,7 +20,7 @@ namespace scanmill {
 
 enum class Outcome {
     ok,
-    doubtful,  ///< of a cell: complete, but a filter doubts its result
+    doubtful,  ///< cells only: complete, but a filter doubts its result
     failed,
     skipped  ///< an input failed, or the run was interrupted
 };
@@ -92,8 +92,8 @@ struct NodeReport {
     Effort effort;
     unsigned attempts = 0;
     ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
-    Metrics metrics;        ///< of the filter, in its declared order
-    Metrics properties;     ///< of the primary output, or of the file that was read; empty unless requested
+    Metrics metrics;        ///< the filter's metrics, in declared order
+    Metrics properties;     ///< properties of the primary output, or of the file that was read; empty unless requested
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
 };
@@ -128,9 +128,9 @@ constexpr auto fields(const OutputReport*) {
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
-    Failure failure;     ///< of the first node that failed, else of the first output
+    Failure failure;     ///< failure of the first failed node, else of the first failed output
     std::optional<std::size_t> failed_node;  ///< whose failure it is, by index into RunGraph::nodes
-    double seconds = 0;  ///< of its nodes and outputs; nodes that cells share count for each
+    double seconds = 0;  ///< sum over its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;
     std::vector<std::string> doubts;  ///< from doubts_about(), and of its outputs
 };

@@ -146,7 +146,7 @@ protected:
         return "{" + (scan.empty() ? "" : "\"scan\": \"" + scan + "\", ") +
                "\"rotation\": [0, 0, 0, 1], \"translation\": [" + std::to_string(x) + ", 0, 0]}";
     }
-    /// Of the only scan, with this pose written in place.
+    /// The pose of the only scan, when it is written inline as `text`.
     std::optional<RigidTransform> written(const std::string& text) {
         found_ = scans("[{path: scans/a.ply, unit: mm, pose: " + text + "}]");
         return batch_.scans.at(0).pose;

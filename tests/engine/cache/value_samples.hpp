@@ -120,7 +120,7 @@ inline std::vector<Value> one_of_each_kind() {
             value(patches()), value(probes()), value(transform()), value(metrics())};
 }
 
-/// Of everything that the value holds.
+/// The hash of everything that the value holds.
 inline std::string key_of(const Value& value) { return EncodedValue(value).content(); }
 
 class ValueFile : public testing::Test {

@@ -62,7 +62,7 @@ TEST(RankTest, AnySizesAndTies_EqualEnumeration) {
 }
 
 TEST(RankTest, HandCase) {
-    // Of the ten choices of two of 1, 2, 3, 4, 5, only {5, 4} and {5, 3} have a sum of at least 8.
+    // Ten choices of two of 1, 2, 3, 4, 5 exist; only {5, 4} and {5, 3} have a sum of at least 8.
     EXPECT_EQ(rank_test(Values{3, 5}, Values{1, 2, 4}), (ExactProbability{2, 10}));
     // Mid-ranks of 1, 2, 2, 3: 1, 2½, 2½, 4. Sums of two of at least 6½: 4 + 2½, twice.
     EXPECT_EQ(rank_test(Values{2, 3}, Values{1, 2}), (ExactProbability{2, 6}));

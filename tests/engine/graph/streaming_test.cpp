@@ -16,7 +16,7 @@ const std::string output = "outputs: {'{scan}.ply': test-stream}\n";
 
 class Streaming : public Run {
 protected:
-    /// Of the first scan, by the plan and by the graph.
+    /// Whether the first scan is streamed, by the plan and by the graph.
     struct Verdict {
         bool plan = false, graph = false;
         bool operator==(const Verdict&) const = default;

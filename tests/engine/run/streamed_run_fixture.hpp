@@ -21,7 +21,7 @@ protected:
         cache_ = std::make_unique<Cache>(folder_ / name);
         settings_.cache = cache_.get();
     }
-    /// Of the prepared graph; `whole`: as if nothing could be streamed.
+    /// Runs the prepared graph; `whole`: as if nothing could be streamed.
     RunReport run_prepared(bool whole) {
         for (RunNode& node : graph_.nodes) {
             EXPECT_EQ(node.leaf.is_streamed, node.is_scan);

@@ -139,7 +139,7 @@ inline Vec3 corner_normal(const APatchResult& result, std::size_t triangle, u32 
     return Vec3::Zero();
 }
 
-/// Of a smooth vertex.
+/// The normal at a smooth vertex.
 inline Vec3 vertex_normal(const APatchResult& result, u32 vertex) {
     for (std::size_t f = 0; f < result.mesh.triangles.size(); ++f)
         if (std::ranges::find(result.mesh.triangles[f], vertex) != result.mesh.triangles[f].end())

@@ -109,7 +109,7 @@ double rms(const std::vector<double>& values) {
     return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// Of the surface's points over the triangles.
+/// Root mean square distance over the surface's points above the triangles.
 template <class Distance>
 double rms_distance(const PatchComplex& patches, Distance&& distance) {
     std::vector<double> found;
@@ -419,7 +419,7 @@ TEST(APatchFit, WithoutPoints_NothingChanges) {
 }
 
 TEST(APatchFit, AnEmptyCloud_IsAsNone) {
-    // Of a mesh without corner-normals points would give the normals.
+    // If a mesh has no corner-normals, the points give the normals.
     TriangleMesh mesh = exact_torus(12, 6);
     mesh.face_columns = {};
     const PointCloud none;

@@ -190,7 +190,7 @@ double degrees_between(const Vec3& one, const Vec3& other) {
     return std::acos(std::clamp(one.dot(other), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-/// Of the creases of a tessellation beside triangles without tips and facets, and the sharp edges of the object.
+/// Compares the creases of a tessellation, away from triangles with tips and facets, with the object's sharp edges.
 struct CreaseFigures {
     std::vector<double> distances;  ///< of middles of edges from the object's, ascending
     std::vector<double>

@@ -272,7 +272,7 @@ TEST(APatchSharp, ContradictoryNormalsAtAVertex_GetTheirMeanWithAWarning) {
 }
 
 TEST(APatchSharp, AnEdgeBisectedStraight_HasTheNormalsOfItsTrianglesInTheMiddle) {
-    // Of a curved rim, whose normals at the ends turn.
+    // A curved boundary edge, where the normals at the two ends differ.
     const TriangleMesh rim = cylinder(8);
     a_patches::PatchMesh mesh;
     mesh.mesh.positions = rim.positions;

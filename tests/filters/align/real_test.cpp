@@ -37,7 +37,7 @@ TEST(AlignReal, ARawViewAndTheSameMovedByItsPose_GiveThePose) {
 
 struct Model {
     const char* file;
-    const char* refusal;  ///< of the message; null if a side of the model is a rectangle that faces upwards
+    const char* refusal;  ///< part of the message; null if a side of the model is a rectangle that faces upwards
 };
 
 class PlateCornersReal : public testing::TestWithParam<Model> {};

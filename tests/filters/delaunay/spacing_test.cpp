@@ -31,7 +31,7 @@ TEST(DelaunaySpacing, Weights_IsTheMeanOfSixNeighbours) {
             EXPECT_DOUBLE_EQ(tets.weights[vertex], std::pow((1 + std::sqrt(2)) / 2, 2));
         }
     }
-    // Of five points each has only four others.
+    // With five points, each has only four others.
     const TetMesh few = weighted(cloud_of({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {0, 0, 10}})).tets;
     EXPECT_DOUBLE_EQ(few.weights[0], std::pow((3 + 3 + 3 + 10) / 4.0, 2));
 }

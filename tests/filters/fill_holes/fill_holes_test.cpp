@@ -253,7 +253,7 @@ TEST(FillHoles, OfFillingsThatMeet_OneGivesWay) {
     const TriangleMesh upper = shifted(turned(lower, std::numbers::pi, {1, 0, 0}), {0, 0, 1.9});
     const TriangleMesh fewer =
         shifted(turned(below(geodesic_sphere(1, 9), 0.8), std::numbers::pi, {1, 0, 0}), {0, 0, 1.9});
-    // Of the new vertices near the axis.
+    // Lowest and highest of the new vertices near the axis.
     const auto heights = [](const TriangleMesh& mesh, const Filled& result) {
         std::pair<double, double> ends{1e9, -1e9};
         for (std::size_t v = mesh.positions.size(); v < result.mesh.positions.size(); ++v) {

@@ -38,7 +38,7 @@ TEST(MeasureBorders, Included_CountLikeAllOthers) {
     EXPECT_EQ(metrics_of(result).find("beyond-borders"), nullptr);
 }
 
-/// Of equally near triangles the first has only a vertex on the border.
+/// Several triangles are equally near; the first has only a vertex on the border.
 TEST(MeasureBorders, VertexOfTheBorder_CountsForTrianglesWithoutABoundaryEdge) {
     const TriangleMesh half = soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {0, 2, 0}},
                                    {{0, 2, 3}, {0, 1, 2}, {0, 3, 4}, {0, 4, 5}, {3, 2, 6}});

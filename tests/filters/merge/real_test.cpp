@@ -60,7 +60,7 @@ protected:
         EXPECT_THAT(context.warnings(), testing::IsEmpty());
         surface_ = std::make_unique<Surface>(*read_mesh(model));
     }
-    /// Of every hundredth point of every view, the quantile of its distance to the model.
+    /// For each view, the quantile of the distances of every hundredth point to the model.
     std::vector<double> distances(const PointCloud& cloud, double share) const {
         std::vector<std::vector<double>> by_source(clouds_.size());
         const std::span<const u32> source = cloud.columns.find("source")->values<u32>();

@@ -20,7 +20,7 @@ using Method = OutlierRemovalParams::Method;
 
 double distance(const Vec3& a, const Vec3& b) { return (a - b).norm(); }
 
-/// Of every row, whether it is an outlier.
+/// For each row, whether it is an outlier.
 std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParams& params) {
     const std::size_t rows = cloud.size();
     std::vector<double> distances(rows);

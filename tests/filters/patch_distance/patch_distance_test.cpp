@@ -67,7 +67,7 @@ TEST(PatchDistance, ByHand) {
     EXPECT_NEAR(column->number(2), -0.01, 1e-14);
     EXPECT_NEAR(column->number(3), 0.005, 1e-14);
     EXPECT_TRUE(std::isnan(column->number(4)));
-    // Of four distances: 0, 0.005, 0.01 and 0.01.
+    // The four distances are 0, 0.005, 0.01 and 0.01.
     EXPECT_NEAR(result.rms, 0.0075, 1e-14);
     EXPECT_NEAR(result.p95, 0.01, 1e-14);
     EXPECT_NEAR(result.max, 0.01, 1e-14);

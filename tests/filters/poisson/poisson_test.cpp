@@ -57,7 +57,7 @@ PointCloud with_normals(PointCloud cloud, const std::function<Vec3(std::size_t)>
     cloud.columns.add(Column("normal", 3, Buffer<float>(std::move(values))));
     return cloud;
 }
-/// Of points round 0, their normals away from it, of length `length`.
+/// Points around 0 with normals of length `length` that point away from it.
 PointCloud outward(const PointCloud& cloud, double length = 1) {
     return with_normals(cloud, [&](std::size_t row) { return Vec3(length * cloud.positions[row].normalized()); });
 }
@@ -169,7 +169,7 @@ TEST(Poisson, Trim_RemovesTheShareOfLeastDensity) {
 }
 
 TEST(Poisson, TrimOfOneVertex_RemovesTheLeastDense) {
-    // Of several equal ones it would be the first.
+    // If several were equally dense, the first would be removed.
     const Made whole = made(outward(vertices_of(icosahedron())), with(3, 0));
     const double share = 1.5 / static_cast<double>(whole.mesh.positions.size());
     const Made less = made(outward(vertices_of(icosahedron())), with(3, share));

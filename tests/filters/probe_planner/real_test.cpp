@@ -129,7 +129,7 @@ double distance_across(const TrueEdge& edge, const Vec3& point) {
     return (off - edge.tangent.dot(off) * edge.tangent).norm();
 }
 
-/// Of 1,000 random positions of T within the error of the true edge, the number for which a circle that moves along the
+/// For 1,000 random positions of T within the error of the true edge: how often a circle that moves along the
 /// planned approach meets a true face before the edge. Does not use the planner's closed form, angles or normals.
 int faces_met_first(const ProbePlan& plan, const ProbeTouch& touch, const TrueEdge& edge, Random& random) {
     const Vec3 bisector = (edge.left_normal + edge.right_normal).normalized(), x = edge.tangent.cross(bisector);
@@ -179,7 +179,7 @@ TEST(ProbePlannerReal, DoubleCone_ASweptBallMeetsTheTrueEdgeFirst) {
     scan.views = {-1, -1, -1, -1, -1, 1, -1, 1, -1, -1, 1, 1, 1, -1, -1, 1, -1, 1, 1, 1, -1, 1, 1, 1};
     scan.resolution = 0.1;
     const RegionGrowResult surface = surface_of(nullptr, scan, 0.4);
-    const double error = 0.4 * 0.4 + 1.5 * 0.1;  // of the voxels and of the scan points, as the page says
+    const double error = 0.4 * 0.4 + 1.5 * 0.1;  // errors of the voxels and of the scan points, as the page gives them
     ProbePlannerParams params = probe_of(1, error, 2);
     params.max_tilt = Angle::degrees(180);
     const Planned result = planned(surface.features, surface.mesh, params);
@@ -226,12 +226,12 @@ public:
 
 private:
     FeatureGraph lines_;
-    std::vector<u32> rows_;  ///< of the segments' starts in the lines
+    std::vector<u32> rows_;  ///< rows where the segments start in the lines
     std::optional<TriangleTree> tree_;
 };
 
-/// The ball moves along the planned approach against the part itself, for 1,000 random positions of T within the error
-/// of the true edge. How far from a sharp edge it meets the part, at most; infinite if it misses the part.
+/// Moves the ball along the planned approach against the part itself, for 1,000 random positions of T within the error
+/// of the true edge. Returns the largest distance from a sharp edge to the contact; infinite if the ball misses.
 double farthest_contact(const TriangleTree& part, const ProbePlan& plan, const ProbeTouch& touch,
                         const SharpEdges& edges, Random& random) {
     const double radius = plan.radius, error = plan.scanner_error, retract = (touch.start - touch.position).norm();

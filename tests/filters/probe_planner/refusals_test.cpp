@@ -196,7 +196,7 @@ TEST(ProbePlannerRefusals, Lines) {
               "line 1 names the vertices 4 to 5 of 8; a line needs at least 2");
     EXPECT_EQ(sentence([](FeatureGraph& g) { g.polylines[1].end = 9; }),
               "line 1 names the vertices 4 to 9 of 8; a line needs at least 2");
-    // Of lines that are not chosen, too: whether lines meet depends on all of them.
+    // Lines that are not chosen are checked, too: whether lines meet depends on all of them.
     ProbePlannerParams creases = params;
     creases.features = ProbePlannerParams::Features::creases;
     EXPECT_EQ(planned(two_lines(), mesh, creases).plan.touches.size(), 3u);

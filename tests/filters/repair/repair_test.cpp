@@ -414,7 +414,7 @@ TEST(Repair, RandomSoups_BecomeManifolds) {
 }
 
 TEST(Repair, RandomSoupsWithManyTrianglesWithoutArea_BecomeManifolds) {
-    // Of points with three values per coordinate, one of ten triangles has its corners on one line.
+    // With three values per coordinate, one of ten triangles has its corners on one line.
     std::size_t without_area = 0, flipped = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         Random random(seed);

@@ -135,7 +135,7 @@ double best_gain(const TetMesh& tets, Carving& carving, std::vector<u32>& chain,
     return best;
 }
 
-/// Of all flips and chains; far below 0 if there are none.
+/// The best gain of all flips and chains; far below 0 if there are none.
 double best_gain_of_all(const TetMesh& tets, Carving& carving) {
     const double bending = carving.bending();
     double best = -1e9;

@@ -108,7 +108,7 @@ TEST(VirtualProbe, AWedgeGivesTheClosedForm) {
 }
 
 TEST(VirtualProbe, TwoDirections_FixTheEdge) {
-    // Of the two circles' intersections the one away from the approaches is Q.
+    // Q is the one of the two circles' intersections that lies away from the approaches.
     const TriangleMesh mesh = wedge(pi / 3);
     Random random(2);
     for (int trial = 0; trial < 200; ++trial) {

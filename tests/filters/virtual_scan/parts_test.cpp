@@ -67,8 +67,8 @@ TEST(VirtualScanBlock, FromAbove_ShowsItsTopWithoutTheHoles) {
     }
 }
 
-/// Of rays at the slope s into a hole of height h, those inside both its upper and its lower circle, which are shifted
-/// by s h, pass through; the others end on its wall.
+/// Rays with slope s enter a hole of height h. Those inside both its upper circle and its lower circle, shifted by s h,
+/// pass through; the others end on its wall.
 TEST(VirtualScanBlock, FromASlope_ShowsTheWallsOfItsHoles) {
     VirtualScanParams params = block_of({88.0, 95.0, 20.0, 21.0, 5.0}, 0.1);
     params.views = {0.25, 0, 1};

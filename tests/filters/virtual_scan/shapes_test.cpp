@@ -162,7 +162,7 @@ TEST(VirtualScanShapes, LBlockFromOneSide_HidesPartOfItsInnerWall) {
             ASSERT_GT(p.z() + (p.y() - 1) / 2, 1 - 1e-9) << p.transpose();
         }
     }
-    // Of the wall's area 1 this leaves 1/2 + 1/16; a ray falls on 0.02² / cos of its wall's angle, cos = 2 / √5.25.
+    // This leaves 1/2 + 1/16 of the wall's area of 1; a ray covers 0.02² / cos of its wall's angle, cos = 2 / √5.25.
     EXPECT_NEAR(seen * 0.0004 / (2 / std::sqrt(5.25)), 0.5625, 0.02);
 }
 

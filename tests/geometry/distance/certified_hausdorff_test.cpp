@@ -29,7 +29,7 @@ CertifiedHausdorff bounds(const TriangleMesh& one, const TriangleMesh& other, co
                                execution);
 }
 
-/// Of 100 random points on every triangle of `mesh`, and of its corners, the largest distance to `other`.
+/// The largest distance to `other` of the corners of `mesh` and of 100 random points on each of its triangles.
 double largest_sampled(const TriangleMesh& mesh, const TriangleMesh& other, Random& random) {
     const TriangleTree tree(other.positions.span(), other.triangles.span(), 1);
     double largest = 0;

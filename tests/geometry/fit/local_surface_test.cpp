@@ -163,7 +163,7 @@ TEST(LocalSurface, TwoThreads_FindTheSame) {
     }
 }
 
-/// Of so few points that no quadric is fitted: the best plane's.
+/// The normal of the best plane, for so few points that no quadric is fitted.
 Vec3 plane_normal(std::span<const Vec3> points) {
     const LocalSurface surface = local_surface(points[0], points.subspan(1), Origin::centroid);
     EXPECT_FALSE(surface.is_curved);

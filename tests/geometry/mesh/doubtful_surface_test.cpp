@@ -28,7 +28,7 @@ TriangleMesh strip(u32 cells, double length) {
 }
 
 TEST(SpannedShare, CountsTheAreaOfTrianglesLongerThanSoManyMedianEdges) {
-    // Of the 3 x 82 edges with repeats, most are 1 long.
+    // Most of the 3 x 82 edges, counted with repeats, are 1 long.
     EXPECT_DOUBLE_EQ(spanned_share(strip(40, 10), 7), 10.0 / 50);
     EXPECT_DOUBLE_EQ(spanned_share(strip(40, 6.9), 7), 0) << "its diagonal is 6.97";
     EXPECT_DOUBLE_EQ(spanned_share(strip(40, 7), 7), 7.0 / 47) << "its diagonal is 7.07";
@@ -63,7 +63,7 @@ TEST(DoubtsAboutSurface, GapsBeginAboveATenthOfTheArea) {
 
 TEST(DoubtsAboutSurface, AHandleBesideAGapIsDoubtful_AndOnlyThere) {
     EXPECT_THAT(doubts_about_surface(test::torus(1, 0.4, 60, 30)), testing::IsEmpty());
-    // Of 40 sections, one is five times as long as the others.
+    // One of 40 sections is five times as long as the others.
     const auto with_gap = [](TriangleMesh mesh) {
         Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
         for (Vec3& p : positions) {

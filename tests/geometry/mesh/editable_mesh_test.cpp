@@ -290,7 +290,7 @@ private:
         expect_changed(0, 0, 0, 0);
     }
 
-    /// Of the polygon with the corners begin … end.
+    /// Triangulates the polygon with the corners begin … end.
     void triangulate(u32 begin, u32 end, std::vector<EditableMesh::RingTriangle>& result) {
         if (end - begin < 2) return;
         const u32 apex = begin + 1 + static_cast<u32>(random_.index(end - begin - 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of this version and this compiler, but of the time before the ABI text named the headers: whatever they were, its
-// declaration must never be called.
+// A module for this version and this compiler from the time before the ABI text named the headers. Whatever they were,
+// its declaration must never be called.
 
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of this version and this compiler, but compiled when the headers were others: its declaration must never be called.
+// A module for this version and this compiler, compiled with other headers: its declaration must never be called.
 
 #undef SCANMILL_HEADERS
 #define SCANMILL_HEADERS "0123456789abcdef"

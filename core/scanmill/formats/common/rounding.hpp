@@ -33,7 +33,7 @@ std::string shift_text(const Vec3& shift);
 
 /// Vertices that are written at equal positions.
 struct JoinedVertices {
-    Array<u32> numbers;  ///< of every vertex; equal for vertices written at equal positions, from 0 without gaps
+    Array<u32> numbers;  ///< number of each vertex; equal for vertices written at equal positions, from 0 without gaps
     Array<Vec3> positions;  ///< as written, by number
     u64 rounded = 0;  ///< vertices written at the position of an earlier one that is elsewhere in the mesh
     u64 equal = 0;  ///< vertices at the position of an earlier one, also in the mesh

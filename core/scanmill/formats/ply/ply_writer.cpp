@@ -102,7 +102,7 @@ public:
 
 private:
     std::vector<Column> columns_;
-    std::vector<bool> has_short_lists_;  // of each column; true when all lengths fit into a byte
+    std::vector<bool> has_short_lists_;  // by column; true when all lengths fit into a byte
 };
 
 void write_ply(const TriangleMesh& mesh, std::string_view vertices, bool has_faces, OutputBuffer& out,

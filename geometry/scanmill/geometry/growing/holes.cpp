@@ -43,7 +43,7 @@ std::vector<Triangle> least_triangulation(const Surface& surface, const NearTria
     const auto& p = surface.positions;
     const Fans& fans = surface.fans;
     const u32 count = static_cast<u32>(corners.size());
-    std::vector<Vec3> normals(corners.size() * corners.size(), Vec3::Zero());  // of the triangle beyond edge i j
+    std::vector<Vec3> normals(corners.size() * corners.size(), Vec3::Zero());  // by edge i j: the normal beyond it
     const auto edge_cost = [&](u32 i, u32 j) {
         const u32 a = corners[i], b = corners[j];
         const bool is_free = fans.left_of(a, b) == invalid_index && fans.left_of(b, a) == invalid_index;

@@ -135,7 +135,7 @@ bool middle_reaches(const Matrix& m, double value) {
 
 /// What the noise allows.
 struct Limits {
-    double variance;  ///< of a vertex
+    double variance;  ///< variance of a vertex position
     double reliable;  ///< least λ of a reliable normal
     double visible;  ///< times √(n - 3): least λ where a crease of the angle is visible
 
@@ -321,7 +321,7 @@ double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, con
         errors.push_back(std::copysign(std::min(std::abs(from_plane), from_quadrics[start].two), from_plane));
     }
     if (errors.empty()) return 0;
-    constexpr double median_of_the_smaller = 0.3757;  // of two standard normal variables without their signs
+    constexpr double median_of_the_smaller = 0.3757;  // median of min(|x|, |y|) for standard normal x and y
     const double concave = -quantile(errors, 0.25), convex = quantile(errors, 0.75);
     const double noise = std::min(concave, convex) / median_of_the_smaller;
     constexpr double rounding = 1e-9;

@@ -74,13 +74,13 @@ std::vector<double> zeros_of_cubic(const std::array<double, 4>& weights);
 class PatchSurface {
 public:
     struct Hit {
-        double share;  ///< of the ray: the point is from + share * direction
+        double share;  ///< position on the ray: the point is from + share * direction
         u32 tet;
         Vec3 point;
         Vec3 gradient;
     };
     struct Foot {
-        Vec3 point;       ///< of the surface
+        Vec3 point;       ///< on the surface
         double distance;  ///< positive outside the object, negative inside
     };
 

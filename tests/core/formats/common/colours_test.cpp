@@ -44,7 +44,7 @@ TEST(ColourFractions_EveryByte, IsRecognisedAsOthersWriteIt) {
 }
 
 TEST(ColourFractions_OtherDecimals, AreNoBytes) {
-    // Of one or two digits only the multiples of 51 / 255 = 0.2 are bytes: 255 · n / 100 is whole for no other n.
+    // With one or two digits only the multiples of 51 / 255 = 0.2 are bytes: 255 · n / 100 is whole for no other n.
     for (int hundredths = 0; hundredths <= 100; ++hundredths)
         EXPECT_EQ(byte_of(fmt::format("{:.2f}", hundredths / 100.0)).has_value(), hundredths % 20 == 0) << hundredths;
     // 128 / 255 = 0.50196…

@@ -99,7 +99,7 @@ TEST(Samples_Las, HaveTheirPointsAndColumns) { check_samples(las_samples, {"las"
 
 struct Sums {
     const char* file;
-    /// Of intensity, return_number, number_of_returns, classification, point_source_id and user_data.
+    /// Sums of intensity, return_number, number_of_returns, classification, point_source_id and user_data.
     std::array<double, 6> sums;
 };
 

@@ -112,7 +112,7 @@ private:
     std::string_view name_;
     std::size_t components_;
     Array<double> numbers_;
-    Array<u32> value_of_;  // of each corner; shorter when the last corners refer to none
+    Array<u32> value_of_;  // by corner; shorter when the last corners refer to none
 };
 
 }  // namespace scanmill
