@@ -73,7 +73,7 @@ struct APatchResult {
 /// nearest to all its triangles' normals. Where no direction suits, the most acute edges become sharp. Where tetrahedra
 /// are inside out, or apexes do not fit below 0.45 of the distance to the next sheet, normals get that direction, too;
 /// then the longest edges of the triangles are bisected, by a cubic through their ends and tangent planes, up to 7
-/// times, unless less than half of the places are repaired so. Where a crease leaves the tetrahedra beside its edge,
+/// times, while that repairs at least half of these triangles. Where a crease leaves the tetrahedra beside its edge,
 /// the edge is bisected, in two rounds, unless less than half of these edges are repaired so; then the normals at its
 /// ends are turned along the edges; then sharp edges become smooth that are below 30 degrees or between normals that
 /// differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip there. A crease that

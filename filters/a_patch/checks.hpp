@@ -9,9 +9,9 @@ namespace scanmill::a_patches {
 /// Tetrahedra inside out.
 std::size_t inverted_tets(const PatchComplex& patches);
 
-/// Edges beside which the surface may have several sheets or a gap, ascending: those with a weight of the wrong sign;
-/// of the sharp ones, by samples, those where a line from the mesh to an apex, or to the segment between two, does not
-/// meet the surface once, or where the crease leaves the thirds beside the edge.
+/// Edges beside which the surface may have several sheets or a gap, ascending: those with a weight of the wrong sign,
+/// and sharp edges where samples show that a line from the mesh to an apex, or to the segment between two apexes, does
+/// not meet the surface once, or that the crease leaves the thirds beside the edge.
 std::vector<u32> doubtful_edges(const PatchComplex& patches, Execution& execution);
 
 /// Doubtful edges, and weights of the wrong sign over triangles.

@@ -59,7 +59,7 @@ bool passes_under(const Hull& hull, const HullEdge& edge, Side side) {
     const std::array<u32, 2> faces{edge.first, edge.second};
     const std::array<Vec3, 2> apexes{hull.apex(edge.first, side), hull.apex(edge.second, side)};
     for (const u32 v : {edge.a, edge.b}) {
-        std::array<std::array<double, 2>, 2> height;  // of apexes over tangent planes: by plane and apex
+        std::array<std::array<double, 2>, 2> height;  // height of apexes over tangent planes, by plane and apex
         for (std::size_t of = 0; of < 2; ++of) {
             const Triangle& t = hull.triangles[faces[of]];
             const auto corner = static_cast<std::size_t>(std::ranges::find(t, v) - t.begin());

@@ -30,7 +30,7 @@ using Points = std::vector<Vec3>;
 constexpr double largest_angle = std::numbers::pi / 180;
 /// Residuals below this share of the points' extent are rounding.
 constexpr double rounding = 1e-12;
-/// A scale nearer to 1 than this is no wrong unit, and less than scanners are calibrated to.
+/// A scale closer to 1 than this does not mean a wrong unit; scanners are calibrated less precisely.
 constexpr double least_scale = 1e-4;
 /// One fit is clearly better than another if its residuals are this many times smaller.
 constexpr double clear = 10;
@@ -287,7 +287,7 @@ Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<V
     if (directions.empty()) directions.emplace_back("`up`", Vec3::UnitZ());
     const auto cosine_of = [&](const Vec3& up) { return normal.dot(up.normalized()); };
     for (const auto& [name, up] : directions) {
-        constexpr double least = 0.5;  // of 60 degrees
+        constexpr double least = 0.5;  // cosine of 60 degrees
         if (const double cosine = cosine_of(up); std::abs(cosine) >= least) return cosine > 0 ? normal : Vec3(-normal);
     }
     const auto& [name, up] = directions.front();

@@ -55,7 +55,7 @@ struct AlignResult {
 ///
 /// Standard error at a point x of the source: sigma sqrt(3/n + tr([x - m] J^-1 [x - m]^T)), where m is the source's
 /// centroid, [v] the cross-product matrix, J = sum(|c|² I - c c^T) over c = a_i - m, and sigma² = sum|residual|² /
-/// (3 n - 6). The farther the part stands from the pairs, the larger it is, whatever the residuals are.
+/// (3 n - 6). The error grows with the distance between the part and the pairs, whatever the residuals are.
 ///
 /// Rectangle: both corner lists are brought in counter-clockwise order seen from their upper sides. The upper side is
 /// that of the mean of the column `normal`; else that of `up`, if it is given; else, of the source, the side from which

@@ -70,9 +70,9 @@ struct ClusterMeshResult {
 
 /// Inserts every distinct point once, in the order of insertion_order.hpp, and completes the mesh.
 ///
-/// The points should be thinned: of even density, as one max_edge is used everywhere. Of rows at one position the first
-/// is used. The column `bin-size` counts only for an absent max_edge; a warning is given if its values differ by more
-/// than a factor of two.
+/// The points should be thinned to even density, because one max_edge is used everywhere. If several rows have one
+/// position, the first is used. The column `bin-size` counts only if max_edge is absent; a warning is given if its
+/// values differ by more than a factor of two.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a parameter out of range, a max_edge below the distance to the nearest point for most points, more than

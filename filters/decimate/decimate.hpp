@@ -21,9 +21,9 @@ enum class DecimateMode {
 struct DecimateParams {
     /// Largest distance between input and result; 0 or more. Below 1e-10 of the mesh's diagonal it counts as that.
     Length max_error = Length::percent_of_diagonal(0.1);
-    /// In place of max_error where the input is outside the result, and where it is inside. The certificate proves the
-    /// larger one. The smaller one limits the removal, with the side of a point at the triangle that stands for it; on
-    /// rough surfaces another triangle may be nearer and the point on the other side of it.
+    /// Replace max_error: `outside` where the input is outside the result, `inside` where it is inside. The certificate
+    /// proves the larger one. The smaller one limits the removal, judged by the side of a point at its own triangle; on
+    /// rough surfaces another triangle may be nearer and have the point on its other side.
     std::optional<Length> outside, inside;
     DecimateMode mode = DecimateMode::direct;
     /// Edges whose triangles' normals differ by more are sharp. 20 to 75 degrees.

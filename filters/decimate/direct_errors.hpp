@@ -3,10 +3,10 @@
 /// Errors of a hole's triangulation, measured to the original surface and the data points.
 ///
 /// Every new edge has a path on the original surface, and every point lies on one side of it. So a triangulation cuts
-/// the original surface along the paths, into one piece per triangle. A piece is made of triangles of the original and
-/// parts of them, whose corners are points of the piece, near the triangle, or points of the paths, near its edges. The
-/// distance to a convex set is convex, so no point between those corners is farther. And the boundary of the piece
-/// follows the edges of the triangle, so every point of the triangle has a point of the piece as near.
+/// the original surface along the paths, into one region per triangle. A region consists of original triangles and
+/// parts of them. Their corners are points of the region, near the triangle, or points of the paths, near its edges.
+/// The distance to a convex set is convex, so no point between the corners is farther. The boundary of the region
+/// follows the edges of the triangle, so every point of the triangle has a point of the region as near.
 
 #include "decimate/hole.hpp"
 #include "decimate/surface.hpp"
@@ -26,7 +26,7 @@ public:
     bool assign(std::vector<HoleTriangle>& triangles, u32 first, std::vector<u32>& owners) const;
 
 private:
-    /// Calls action(p) for the points whose piece the triangle is.
+    /// Calls action(p) for the points whose region the triangle represents.
     template <class Action>
     void for_each_point(u32 i, u32 k, u32 j, Action&& action) const;
     std::size_t index(u32 i, u32 j) const { return (i * corners_.size() + j) * words_; }

@@ -21,7 +21,7 @@ struct Edit {
     std::vector<Triangle> triangles;
     std::vector<EditableMesh::RingTriangle> ring_triangles;
     std::vector<SignedErrors> errors;  ///< by triangle
-    /// Points of the original surface that the old triangles stand for, and the new triangle of each.
+    /// Points of the original surface that the old triangles represent, and the new triangle of each.
     std::vector<u32> points, owners;
 
     void clear(u32 new_element, bool flips) {

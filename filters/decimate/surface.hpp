@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The mesh while it is decimated: its triangles, the points of the original surface that each of them stands for, the
+/// The mesh while it is decimated: its triangles, the points of the original surface that each one represents, the
 /// errors, and a tree of boxes.
 
 #include <span>
@@ -29,7 +29,7 @@ public:
         nexts_[number] = heads_[row];
         heads_[row] = number;
     }
-    /// Removed vertices inside smooth faces, and data points, that the triangle stands for.
+    /// Removed vertices inside smooth faces, and data points, that the triangle represents.
     template <class Action>
     void for_each_point(u32 row, Action&& action) const {
         for (u32 number = heads_[row]; number != EditableMesh::none; number = nexts_[number]) action(number);
@@ -51,7 +51,7 @@ public:
         return {features.follow_line(vertex, one, is_left, passed),
                 features.follow_line(vertex, other, is_left, passed)};
     }
-    /// Whether the edge between two vertices stands for a part of a feature line. Pre: it is an edge of the mesh.
+    /// Whether the edge between two vertices represents a part of a feature line. Pre: it is an edge of the mesh.
     bool is_feature(u32 half_edge) const;
 
     /// Pre: planned on the mesh as it is. `stamp`: of the changed boxes. Appends the new rows.

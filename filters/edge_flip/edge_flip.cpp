@@ -35,8 +35,8 @@ struct Direction {
 /// Pre: the angles differ by less than π.
 bool is_less(const Direction& a, const Direction& b) { return a.cosine * b.sine > a.sine * b.cosine; }
 
-/// The least angle of the triangle with the edges `one` and `two` from one of its corners. Of the three angles, which
-/// have the same cross product, it is the one with the largest dot product.
+/// The least angle of the triangle with the edges `one` and `two` from one of its corners. All three angles have the
+/// same cross product, so the least is the one with the largest dot product.
 Direction least_angle(const Vec3& one, const Vec3& two, const Vec3& normal) {
     const double dot = one.dot(two);
     return {std::max({dot, one.squaredNorm() - dot, two.squaredNorm() - dot}), normal.norm()};

@@ -85,7 +85,7 @@ struct EdgeFlipResult {
 ///       Vertices at one position are different vertices: the mesh is open between them, which a warning counts.
 /// Post: same vertices, edges, triangles, boundary and Euler characteristic. A second run flips nothing. With
 ///       `delaunay` the sorted list of all angles grows with every flip, in lexicographic order, and with the others
-///       the sum of the lengths of all edges falls: so the flips end. Of a mesh in a plane `delaunay` makes a Delaunay
+///       the sum of all edge lengths falls: so the flips end. In a plane mesh, `delaunay` makes a Delaunay
 ///       triangulation: no vertex is inside the circumcircle of a triangle, within these tolerances.
 ///       Ties: an edge with an equal diagonal stays. Deterministic: the same bytes on every machine.
 /// Cost: in practice linear, 60 bytes per triangle beside the result and 16 per flip; at worst the square of the number

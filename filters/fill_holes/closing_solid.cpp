@@ -26,7 +26,7 @@ namespace scanmill {
 
 namespace {
 
-/// To get rid of edges of four triangles, by filling the cells around them.
+/// Rounds that fill the cells around edges with four triangles.
 constexpr int most_attempts = 20;
 
 /// Cost of a suggested triangle as a share of its area: a fair triangulation is larger than the flattest one.
@@ -201,8 +201,8 @@ private:
         }
     }
 
-    /// Lets the part of the vertex's cells change sides with which the most surplus parts, at all vertices, disappear;
-    /// of equal ones that which the mesh claims least, then the smaller one. False if none disappears.
+    /// At the vertex, lets that part of its cells change sides that makes the most surplus parts, at all vertices,
+    /// disappear; ties: the part that the mesh claims least, then the smaller one. False if none disappears.
     bool mend(u32 vertex) {
         if (stars_->surplus_parts(vertex, labels_) == 0) return false;
         std::map<std::pair<bool, u32>, std::vector<u32>> parts;  // first those inside, ascending by lowest cell

@@ -23,8 +23,8 @@ struct ClosingSolid {
 /// A closed surface on the mesh's vertices that contains nearly all of its triangles.
 ///
 /// The vertices are tetrahedralised (Delaunay). Cells behind a triangle of the mesh are inside, cells in front of one
-/// and those beyond the hull are outside; a cell that both claim belongs to the side with more area. Of the ways to
-/// divide the other cells, the one whose boundary has the least area is taken (minimum cut). Triangles from row `given`
+/// and those beyond the hull are outside; a cell that both claim belongs to the side with more area. Other cells
+/// are divided so that the boundary has the least area (minimum cut). Triangles from row `given`
 /// on are suggestions: they claim nothing, and a tenth of their area counts. Face-connected parts of
 /// either side in which no component of the mesh has most of its triangles are left out. At a vertex where the boundary
 /// is not one closed fan, parts of its cells then change sides, as long as such surplus parts disappear; where some are

@@ -42,7 +42,7 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
             .hint("repair drops such triangles");
 }
 
-/// The loops' fillings, none of which intersects anything; holes without one are open.
+/// The triangulations of the loops, none of which intersects anything; a hole without one is open.
 Assembly fillings_of(const TriangleMesh& mesh, const MeshLoops& boundary, std::vector<Hole>& holes, Context& context) {
     Assembly all(mesh, {});
     if (holes.empty()) return all;
@@ -68,7 +68,7 @@ struct Closed {
     std::size_t replaced;
 };
 
-/// The mesh closed as a whole; empty if that is not possible, or if most of the surface would be fillings.
+/// The mesh closed as a whole; empty if that is not possible, or if most of the surface would be new.
 std::optional<Closed> closed_together(const TriangleMesh& mesh, const FilledMesh& filled, Context& context) {
     const ClosingSolid solid =
         closing_solid(filled.positions, filled.triangles, filled.kept, mesh.frame.origin, context);

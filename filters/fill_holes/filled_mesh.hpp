@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The mesh with its fillings: where new rows take their values from, and which rows are marked.
+/// The mesh with its filled holes: where new rows take their values from, and which rows are marked.
 
 #include <span>
 #include <vector>
@@ -37,7 +37,7 @@ FilledMesh filled_mesh(const TriangleMesh& mesh, Assembly all, std::span<const H
 
 /// The same with the triangles of `closed`: those that exist keep their order and rows, new ones follow. A new triangle
 /// has the values of the first triangle at its first vertex. It fills a hole if it is connected, through new triangles,
-/// to an edge that was on the boundary; otherwise it takes the place of others on the same vertices. Returns how many
+/// to an edge that was on the boundary; otherwise it replaces others on the same vertices. Returns how many
 /// triangles of the input are left out.
 std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, std::size_t first_new);
 

@@ -183,7 +183,7 @@ std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, 
                                                      const Execution& execution) const {
     constexpr double impossible = HoleTriangulation::impossible;
     const auto vertex = [&](u32 i) { return half_edges::start(mesh_, loop[i]); };
-    // The loop has the surface on its left, the filling the other way round.
+    // The surface lies on the left of the loop; the triangulation runs the other way round.
     const auto triangle = [&](u32 i, u32 k, u32 j) { return Triangle{vertex(j), vertex(k), vertex(i)}; };
     const auto edge_cost = [&](u32 i, u32 j) {
         execution.check_cancelled();
@@ -215,7 +215,7 @@ Triangle Conflicts::joined(Triangle triangle) const {
     return triangle;
 }
 
-/// Fillings with an inner edge, between two vertices of loops, that the mesh or another filling has.
+/// Triangulations with an inner edge, between two vertices of loops, that the mesh or another triangulation has.
 std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::span<const u32> begin,
                                                      std::span<const Hole> holes) const {
     std::vector<u32> losers;
@@ -231,7 +231,7 @@ std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::s
                     edges.push_back(key(a, b));
         std::ranges::sort(edges);
         for (std::size_t i = 1; i < edges.size(); ++i) {
-            if (edges[i] != edges[i - 1]) continue;  // an edge of the loop has one triangle of the filling
+            if (edges[i] != edges[i - 1]) continue;  // the triangulation has one triangle at an edge of the loop
             if (loop_edges_.contains(edges[i])) losers.push_back(owner);
             const auto [found, is_new] = owner_of.try_emplace(edges[i], owner);
             if (!is_new) losers.push_back(loser_of(owner, found->second, holes));

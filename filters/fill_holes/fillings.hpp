@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The fillings of a mesh's loops: which of them intersect something or repeat an edge, and what replaces them.
+/// The triangulations of a mesh's loops: which of them intersect something or repeat an edge, and what replaces them.
 
 #include <span>
 #include <unordered_map>
@@ -14,7 +14,7 @@
 
 namespace scanmill {
 
-/// A loop with its filling, which becomes plainer while it intersects something.
+/// A loop with its triangulation, which becomes plainer while it intersects something.
 struct Hole {
     std::span<const u32> loop;
     FillingStage stage;
@@ -26,7 +26,7 @@ struct Hole {
     void demote();
 };
 
-/// The mesh with all fillings.
+/// The mesh with the triangulations of all loops.
 struct Assembly {
     Array<Vec3> positions;
     Array<Triangle> triangles;
@@ -36,15 +36,15 @@ struct Assembly {
     Assembly(const TriangleMesh& mesh, std::span<const Hole> holes);
 };
 
-/// Finds which fillings intersect something, or repeat an edge.
+/// Finds the triangulations that intersect something or repeat an edge.
 class Conflicts {
 public:
     Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes);
 
-    /// Fills the holes at stage `avoiding` by least_triangulation(); without one they are open.
+    /// Triangulates the holes at stage `avoiding` by least_triangulation(); those without a result stay open.
     void avoid(std::vector<Hole>& holes, const Execution& execution) const;
 
-    /// Demotes the fillings that have to give way; false if there is none.
+    /// Demotes the triangulations that have to give way; false if there is none.
     bool resolve(const Assembly& all, std::vector<Hole>& holes, const Execution& execution) const;
 
 private:
@@ -53,7 +53,7 @@ private:
     /// The mesh's triangles whose boxes meet that of one of `others`. Cost: linear in the mesh's triangles.
     Nearby nearby(const TriangleTree& others, const Execution& execution) const;
     /// The triangles of least total area that close the loop, do not intersect the mesh and repeat none of its edges;
-    /// of equal ones those that join the first vertices. Empty if there are none. `around`: the triangles whose boxes
+    /// ties: those that join the first vertices. Empty if there are none. `around`: the triangles whose boxes
     /// meet that of the loop, and others.
     std::vector<Triangle> least_triangulation(std::span<const u32> loop, const Nearby& around,
                                               const Execution& execution) const;
@@ -69,7 +69,7 @@ private:
     std::unordered_set<u64> loop_edges_;
 };
 
-/// Fills the hole at its stage, or at the first plainer one for which CGAL has a filling; otherwise its stage becomes
+/// Triangulates the hole at its stage, or at the first plainer one at which CGAL succeeds; otherwise its stage becomes
 /// `avoiding`, see Conflicts::avoid().
 void fill(Hole& hole, const TriangleMesh& mesh, const MeshLoops& boundary, const Execution& execution);
 

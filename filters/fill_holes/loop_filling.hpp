@@ -21,7 +21,7 @@ struct LoopSurroundings {
     u32 loop = 0;
 };
 
-/// How far a filling is worked out. `avoiding`: the triangles of least area that do not intersect the mesh, see
+/// Stages of a hole triangulation. `avoiding`: the triangles of least area that do not intersect the mesh, see
 /// Conflicts::least_triangulation().
 enum class FillingStage { avoiding, triangulated, refined, faired };
 
@@ -34,7 +34,7 @@ struct LoopFilling {
 };
 
 /// Pre: every vertex of the surroundings has one cycle of triangles and gaps; stage is not `avoiding`. Throws
-/// Cancelled. If fairing fails, the filling is empty.
+/// Cancelled. If fairing fails, the result is empty.
 LoopFilling fill_loop(const LoopSurroundings& surroundings, FillingStage stage, const Execution& execution);
 
 }  // namespace scanmill

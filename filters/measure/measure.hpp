@@ -110,8 +110,8 @@ struct Measurement {
 Measurement measure(const TriangleMesh& mesh, const TriangleMesh& truth, const MeasureParams& params, Context& context);
 Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const MeasureParams& params, Context& context);
 
-/// The mesh with Measurement::vertex_distances as the vertex column `distance-to-truth`, of lengths, in place of one of
-/// that name. Shares the mesh's memory. Pre: measured from this mesh.
+/// The mesh with Measurement::vertex_distances as the vertex column `distance-to-truth`, of lengths. Replaces a column
+/// of that name. Shares the mesh's memory. Pre: measured from this mesh.
 TriangleMesh deviation_of(const TriangleMesh& mesh, const Measurement& measured);
 
 /// A measurement under the metric names of workflows, gates and reports. A number that is absent from the measurement

@@ -24,8 +24,8 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const
 
 /// Removes from `nearest`, keeping the order of the others, the points whose nearest point on the mesh is on a boundary
 /// edge (an edge of only one triangle) or on a vertex of one, within `rounding`. Returns how many were removed.
-/// Edges are compared by vertex index, as in geometry/topology.hpp. Of equally near triangles the one in `nearest`
-/// counts.
+/// Edges are compared by vertex index, as in geometry/topology.hpp. If several triangles are equally near, the one in
+/// `nearest` counts.
 ///
 /// Pre: `nearest` belongs to these points and this mesh. Throws Error if no point would be left.
 /// Cost: O(points + F).

@@ -2,7 +2,7 @@
 #pragma once
 /// Merges several clouds of one object: each is moved by its pose, and points are dropped where clouds overlap.
 ///
-/// A scanner that stands at ten positions gives ten clouds, often in ten coordinate systems. Points are never averaged
+/// A scanner set up at ten positions gives ten clouds, often in ten coordinate systems. Points are never averaged
 /// or moved against each other, so the poses must be accurate.
 
 #include <memory>
@@ -22,7 +22,7 @@ struct MergeParams {
     Prefer prefer = Prefer::none;
     /// Keeps one of the points of different inputs that lie within this distance of each other; 0 keeps all.
     Length within;
-    /// Stands for the column `uncertainty` where an input lacks it, and for NaN in it; 0 or more.
+    /// Replaces NaN in the column `uncertainty`, and the column where an input lacks it; 0 or more.
     std::optional<Length> default_uncertainty;
     /// Empty, or one for every input: from its world coordinates (frame origin included) to those of the result. A pose
     /// of unknown unit is in the unit of the clouds.

@@ -27,8 +27,8 @@ namespace {
 using Method = NormalsParams::Method;
 using Orient = NormalsParams::Orient;
 
-constexpr double least_flatness = 1e-6;  // of neighbours that determine a plane
-constexpr double grazing_cosine = 0.08715574274765817;  // of 85 degrees
+constexpr double least_flatness = 1e-6;  // for neighbours that determine a plane
+constexpr double grazing_cosine = 0.08715574274765817;  // cosine of 85 degrees
 constexpr double doubtful_share = 0.05;
 constexpr double doubtful_variation = 0.1;  // a hemisphere has 1/9, a ball 1/3
 constexpr std::size_t chunk = 1 << 12;

@@ -39,7 +39,7 @@ struct PlateCornersResult {
 
 /// 1. The plane with the most points within `tolerance`, by random samples, then by least squares until its points stay
 ///    the same.
-/// 2. Of the points on it those that belong to a group of at least 2 % of them; the gap between two groups is larger
+/// 2. The points on it that belong to a group of at least 2 % of them. The gap between two groups is larger
 ///    than a hundredth of the extent and than four times the spacing.
 /// 3. The rectangle of smallest area around them, only as a start. Each of its sides is cut into strips, without the
 ///    tenth at either end, and the outermost point of every strip is taken.

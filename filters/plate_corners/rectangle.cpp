@@ -28,7 +28,7 @@ constexpr double end_share = 0.1;
 /// A line with half of the strips is missed once in 10^62 runs.
 constexpr std::size_t line_trials = 500;
 constexpr double least_strips = 0.5;
-constexpr double largest_skew_cosine = 0.0871557427476582;  // of 85 degrees
+constexpr double largest_skew_cosine = 0.0871557427476582;  // cosine of 85 degrees
 
 double square(double x) { return x * x; }
 

@@ -13,7 +13,7 @@ namespace scanmill::probing {
 namespace {
 
 constexpr std::size_t most_facets = 1000;
-/// The least of the rims of five scanned double cones and cones on hemispheres is 0.017; a chamfer has 0.
+/// The smallest value at the edges of five scanned double cones and cones on hemispheres is 0.017; a chamfer has 0.
 constexpr double least_spread = 0.015;
 constexpr double sine_10 = 0.17364817766693033;
 /// Squared lengths of the chords of 15 degrees and of 1 degree on the unit sphere.
@@ -109,7 +109,7 @@ bool divide_anew(std::vector<Facet>& facets, const Plane& first, const Plane& se
     return is_changed;
 }
 
-/// The height over the plane through the point, at the edge: by the parabola height = offset + bend · along².
+/// The height above the plane through the point, at the edge, by the parabola height = offset + factor · along².
 double offset_of(const std::vector<Facet>& facets, Side side, const Vec3& normal, const Vec3& tangent) {
     double weight = 0, mean_square = 0, mean_height = 0;
     const auto for_each = [&](auto&& call) {

@@ -29,10 +29,10 @@ double mean_edge_near(const TriangleTree& mesh, const Vec3& point, double radius
 /// 2. Each half has a plane: the mean normal, through the mean centre. A corner belongs to the plane that it is nearer
 ///    to, a triangle to a plane that all its corners belong to; other triangles are left out. This is repeated until
 ///    nothing changes, at most ten times (Bradley and Mangasarian 2000).
-/// 3. Each plane is moved to where its face is at the edge, by a parabola along the edge: rims of cylinders are curved.
-/// 4. A pair of normals leaves of each triangle min(1, (angle to the nearer normal / 15 degrees)²), the mean being its
-///    misfit. The planes replace the guess if their misfit is smaller by more than that of an error of one degree; a
-///    guess of one face, whose normals are equal, if it is also less than half: noise alone divides a face, too.
+/// 3. Each plane is moved to where its face is at the edge, by a parabola along the edge: cylinders have curved edges.
+/// 4. A pair of normals has a misfit: the mean over the triangles of min(1, (angle to the nearer normal / 15
+///    degrees)²). The planes replace the guess if their misfit is smaller by more than that of a one-degree error. A
+///    guess of one face, whose normals are equal, must also be halved: noise alone divides a face, too.
 ///
 /// Where these planes meet at less than 10 degrees there is no edge: position and tangent are those of the guess, and
 /// both normals are equal.

@@ -133,7 +133,7 @@ void Pairs::find_runs(u32 line_number) {
 }
 
 void Pairs::pair_runs() {
-    std::map<std::pair<u32, u32>, std::pair<double, double>> matched;  // of runs: lengths of the first and second
+    std::map<std::pair<u32, u32>, std::pair<double, double>> matched;  // by pair of runs: the matched lengths
     for (u32 number = 0; number < segments_.size(); ++number) {
         if (matches_[number] == none) continue;
         const u32 run = run_of_[number], other = run_of_[matches_[number]];

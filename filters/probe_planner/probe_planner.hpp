@@ -81,7 +81,7 @@ struct ProbePlannerResult {
 ///
 /// Collisions are checked for the planned T only; raise `stylus_radius` by `scanner_error` for approaches from below.
 ///
-/// A ball that comes from above meets the rim of a round hole of radius R before the opposite rim if
+/// A ball that comes from above meets the edge of a round hole of radius R before the opposite edge if
 /// r sin psi <= R, with the angle psi between the preferred direction (the bisector, the middle of the known range, or
 /// the given approach) and the normal of the left face; else the touch is too narrow.
 ///

@@ -16,8 +16,8 @@ namespace scanmill::growing {
 namespace {
 
 constexpr double opposed_cosine = -0.9;  // of 154 degrees
-/// Shares of the distance to the neighbour, along the normal. A neighbour beside is no higher than the first; less than
-/// the second is rounding and curvature.
+/// Heights along the normal, as shares of the distance to the neighbour. A neighbour on the same surface is at most
+/// as high as the first; heights below the second are rounding and curvature.
 constexpr double most_height = 0.3;
 constexpr double least_height = 0.01;
 

@@ -17,11 +17,11 @@ struct GivenNormals {
     Array<Vec3> doubtful;
 };
 
-/// Replaces the principal normals by those of the column `normal`, if there is one. Of several rows at one position the
-/// first normal by x, y, z is used. A point without a finite normal above zero keeps its principal one, with the sign
-/// of the given ones near it, and a warning gives the number of such points. Signs do not count where more than half of
-/// the points have no normal, and where they are mixed (see OpposedNormals); a warning is given. Throws Error when the
-/// column has not three numbers per row, and when more than three quarters of the normals are more than 60 degrees from
+/// Replaces the principal normals by those of the column `normal`, if there is one. If several rows have one position,
+/// the first normal by x, y, z is used. A point without a finite non-zero normal keeps its principal one, with the sign
+/// of the given ones near it, and a warning gives the number of such points. Signs are ignored, with a warning, where
+/// more than half of the points have no normal, and where signs are mixed (see OpposedNormals). Throws Error when the
+/// column is not three numbers wide, and when more than three quarters of the normals are more than 60 degrees from
 /// the principal ones, in directions in which their neighbours lie; above a quarter a warning is given. Cost: linear.
 GivenNormals take_given_normals(const PointCloud& cloud, const DistinctPoints& points,
                                 const Neighbourhoods& neighbourhoods, PointNormals& normals, Context& context);

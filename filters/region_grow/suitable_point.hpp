@@ -72,7 +72,7 @@ public:
     /// neighbour lists.
     ///
     /// Score::circumradius: the point that sees the edge under the largest angle, so that the circle through the three
-    /// is empty; Score::midpoint: the point nearest the edge's midpoint. Of equal ones (within rounding) the lowest
+    /// is empty; Score::midpoint: the point nearest the edge's midpoint. Ties (within rounding): the lowest
     /// number. `in_space`: the triangle must not intersect the surface in space. Where a boundary that faces the other
     /// way is near, this is tested in any case.
     SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool wide, bool in_space);

@@ -83,7 +83,7 @@ public:
         return gains_.uncovers_larger_facet(cell, open, largest_);
     }
 
-    /// Smoothing is allowed at such cells, however little the edge bends.
+    /// Smoothing is allowed at such cells, however small the dihedral deviation at the edge is.
     bool is_near_exposed(u32 cell) const { return is_near_exposed_[cell] == 1; }
     /// False if the cell was marked already.
     bool mark_near_exposed(u32 cell) { return std::exchange(is_near_exposed_[cell], u8(1)) == 0; }

@@ -157,8 +157,8 @@ void Sculptor::refresh_near(u32 removed) {
     changed_.clear();
     for (u32 across : tets_.neighbours[removed])
         if (solid_.has(across)) changed_.push_back(across);
-    // Gains depend on the boundary triangles at the cell's edges. Of the cells at an edge only the first and the last
-    // have such a triangle; the triangle on the other side of the edge is now a different one.
+    // Gains depend on the boundary triangles at the cell's edges. Among the cells at an edge only the first and the
+    // last have such a triangle; the triangle on the other side of the edge is now a different one.
     for (const CellEdge& edge : cell_edges)
         for (const auto& [across, kept] : {std::pair(edge.c, edge.d), std::pair(edge.d, edge.c)}) {
             EdgeWalk walk(tets_, removed, across, kept);

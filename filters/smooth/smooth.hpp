@@ -41,8 +41,8 @@ struct SmoothResult {
 /// together.
 ///
 /// Weights of Method::mls are 1 / (1 + (d / h)²)², where d is the distance to the point and h half of the radius, or
-/// half of the distance of the farthest neighbour. Of equally near positions the lower by x, then y, then z is nearer;
-/// those at exactly `radius` are not neighbours.
+/// half of the distance of the farthest neighbour. Among equally near positions the lower by x, then y, then z is
+/// nearer; those at exactly `radius` are not neighbours.
 ///
 /// A point whose neighbours do not determine a polynomial (fewer than 5, or all near one conic) moves onto the plane;
 /// one with fewer than 3 stays where it is.

@@ -9,7 +9,7 @@ namespace scanmill::tessellation {
 
 namespace {
 
-constexpr double share_along = 2. / 3;  // of max_error, for lines along rows
+constexpr double share_along = 2. / 3;  // share of max_error, for lines along rows
 constexpr int most_bisections = 60;
 
 /// The tetrahedra at an edge and the points of the surface there.

@@ -29,7 +29,7 @@ struct Strip {
     unsigned segments = 1;  ///< segments of the edge; more for samples where the surface crosses it
     unsigned fan = 1;  ///< columns less one
     std::vector<Sample> samples;
-    std::vector<u32> numbers;  ///< of points, by sample and column
+    std::vector<u32> numbers;  ///< point numbers, by sample and column
     std::vector<SurfacePoint> points;
     /// At a sharp edge, by point: the normal of the second triangle's function on the crease; else zero.
     std::vector<Vec3> second_normals;

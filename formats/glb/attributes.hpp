@@ -14,7 +14,7 @@ namespace scanmill::glb {
 
 struct Attribute {
     std::string name;  ///< "NORMAL", "_RING"
-    int component_type;  ///< of tinygltf
+    int component_type;  ///< tinygltf's constant
     u32 components;
     bool is_normalised = false;
     /// Writes the rows to `rows`, stride() bytes apart; the bytes between them are not changed.

@@ -175,8 +175,8 @@ public:
     std::string hash(const std::filesystem::path& file) const {
         return cache_ ? cache_->file_hash(file) : content_hash(file);
     }
-    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. Of a batch, --json prints one
-    /// event per line during the run, and the verdict of its gate follows. Returns the exit code.
+    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. For a batch, --json prints one
+    /// event per line during the run, and then the verdict of the batch's gate. Returns the exit code.
     int run(const SessionTask& task, bool is_batch);
 
 private:
@@ -354,7 +354,7 @@ int run_batch(const BatchOptions& options) {
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
     SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
-    // A part of the batch is no night of it: its other cells are not missing.
+    // A partial run gets a name of its own: the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
     if (checked.batch.gate) task.gate = *checked.batch.gate;
     return execution.run(task, true);

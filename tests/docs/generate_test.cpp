@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tools/generate.sh in a tree of two filters, with a program that knows those it is told.
+// tools/generate.sh in a tree of two filters, with a program that has the filters passed to it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

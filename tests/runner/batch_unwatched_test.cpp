@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches that nobody watches: what happened is clear the morning after.
+// Unattended batches: the records and messages explain afterwards what happened.
 
 #include <chrono>
 #include <csignal>

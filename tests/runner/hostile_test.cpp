@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hostile surroundings and names: full disks, folders without rights, names that no one would choose, things that are
-// no files. Each is one clear error with its exit code, and nothing half-written stays.
+// Hostile surroundings and names: full disks, folders without rights, odd names, things that are not files.
+// Each gives one clear error with its exit code and leaves nothing half-written.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

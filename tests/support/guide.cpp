@@ -55,7 +55,7 @@ void add_commands(const std::vector<std::string>& block, std::size_t line, Guide
     }
 }
 
-/// Scans run beside each other, so the order of what is said of them is nobody's promise: the messages that the lines
+/// Scans run in parallel, so the order of their messages is not fixed. Returns the messages that the lines
 /// begin with, sorted, each with the lines that belong to it.
 std::vector<std::string> with_messages_sorted(const std::vector<std::string>& lines) {
     std::vector<std::vector<std::string>> messages;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Guides in docs/ that are run word by word: files that a reader is told to write, commands that he is told to type,
+/// Guides in docs/ that are run word by word: files that a reader is asked to write, commands that he is asked to type,
 /// and what they print.
 ///
 /// A fenced block after the line `<!-- file: NAME -->` is a file's content; one after `<!-- run -->` holds commands,
-/// each after `$ `, followed by what it prints on stdout and stderr. In that, a line of `…` alone stands for any lines,
+/// each after `$ `, followed by what it prints on stdout and stderr. There, a line `…` alone matches any lines,
 /// and `…` within a line for anything. Other blocks are for the eye. Commands of one guide run in one shell, in one
 /// folder.
 

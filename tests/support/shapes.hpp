@@ -2,7 +2,7 @@
 #pragma once
 /// Meshes whose every number is known in closed form, for any test: closed, oriented outwards, no vertex twice.
 ///
-/// Their facts (Euler characteristic, area, volume, radii) are asserted in tests/core/shapes_test.cpp. Order of
+/// Their properties (Euler characteristic, area, volume, radii) are asserted in tests/core/shapes_test.cpp. Order of
 /// vertices and triangles is fixed, positions use only exactly rounded operations where no angle is involved.
 
 #include <initializer_list>

@@ -2,7 +2,7 @@
 #pragma once
 /// Shared by the C++ drivers: reads requests as JSON lines, writes answers, and reads and writes raw arrays.
 ///
-/// A request is {"do": JOB, …}. Its answer holds facts about the result (and "seconds" for a timed job), or is
+/// A request is {"do": JOB, …}. Its answer holds properties of the result (and "seconds" for a timed job), or is
 /// {"failed": SENTENCE}. Standard output holds only answers; output of the libraries goes to standard error.
 
 #include <array>

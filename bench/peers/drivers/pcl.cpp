@@ -69,8 +69,8 @@ Json remove_outliers(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"kept", left.size()}};
 }
 
-/// Estimates the normal of every point from its nearest points, itself included. The fact that must agree between
-/// programs is the share of normals with x as their largest component.
+/// Estimates the normal of every point from its nearest points, itself included. Programs are compared by the
+/// share of normals with x as their largest component.
 Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
     pcl::PointCloud<pcl::Normal> normals;
     const double seconds = peers::seconds_of([&] {

@@ -46,7 +46,7 @@ void for_each_edge(const ByVertex& by_vertex, Action&& action) {
         }
 }
 
-/// In place of an opposite: of a half-edge on the boundary; of the numbers of a triangle with a repeated vertex.
+/// Values of an opposite: `boundary`: on the boundary; `no_half_edge`: in a triangle with a repeated vertex.
 inline constexpr u32 boundary = ~u32(0), no_half_edge = ~u32(0) - 1;
 
 /// The opposite of every half-edge, or `boundary`, or `no_half_edge`.

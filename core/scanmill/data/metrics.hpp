@@ -37,7 +37,7 @@ constexpr auto fields(const Metric*) {
 
 struct Metrics {
     std::vector<Metric> values;
-    LengthUnit unit = LengthUnit::unknown;  ///< of lengths; areas and volumes are in its powers
+    LengthUnit unit = LengthUnit::unknown;  ///< unit of lengths; areas and volumes use its powers
 
     /// Replaces an earlier metric of the same name.
     void set(std::string_view name, double value, Unit kind);

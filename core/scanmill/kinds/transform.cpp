@@ -43,7 +43,7 @@ Eigen::Matrix3d orthonormal(Eigen::Matrix3d matrix) {
 }  // namespace
 
 Eigen::Matrix3d rotation_of(std::span<const double, 4> quaternion, std::string_view place, const OnWarning& warn) {
-    constexpr double of_rounding = 1e-5;  // of components with six digits, with room to spare
+    constexpr double of_rounding = 1e-5;  // rounding of components with six digits, with room to spare
     constexpr double most = 1e-3;
     const Eigen::Quaterniond q(quaternion[3], quaternion[0], quaternion[1], quaternion[2]);
     const double length = q.norm();

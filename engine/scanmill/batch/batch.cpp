@@ -638,7 +638,7 @@ private:
         return name;
     }
 
-    /// Two cells must not write one file. Of many such files the first ten are reported.
+    /// Two cells must not write one file. Only the first ten such files are reported.
     void report_shared_files() {
         OutputNames files{fs::path()};
         std::size_t shared = 0;

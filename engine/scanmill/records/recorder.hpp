@@ -59,7 +59,7 @@ private:
     std::string trouble_;
     std::vector<StepRecord> steps_;
     std::vector<CellRecord> cells_;
-    std::vector<PastCosts> costs_;  // of later passes
+    std::vector<PastCosts> costs_;  // costs of later passes
     bool measures_costs_;
     std::vector<std::optional<CostRecord>> node_costs_;  // by node; nothing: it did not run, or failed
     std::chrono::steady_clock::time_point begin_, flushed_;

@@ -115,7 +115,7 @@ OutputLock::OutputLock(const fs::path& folder, const std::vector<std::string>& c
 
 OutputLock::~OutputLock() {
     if (descriptor_ < 0) return;
-    ::unlink(file_.c_str());  // before the lock is released: nobody else holds it
+    ::unlink(file_.c_str());  // before the lock is released: no other process holds it
     ::close(descriptor_);
 }
 

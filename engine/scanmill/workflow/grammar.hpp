@@ -53,7 +53,7 @@ bool require_name(const std::string& name, Position position, std::string_view w
 /// Reports braces that do not enclose one of `placeholders`. `what` begins the message: "the frame".
 void check_placeholders(const std::string& text, std::string_view what, std::span<const std::string> placeholders,
                         Position position, Diagnostics& diagnostics);
-/// The text with `value_of` every placeholder in its place.
+/// The text with every placeholder replaced by its `value_of`.
 std::string with_placeholders(const std::string& text, const std::function<std::string(const std::string&)>& value_of);
 
 /// The frames of a list of scans may contain {stem}, the scan's file name without folder and extension; see stem_of().

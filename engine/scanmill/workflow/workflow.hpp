@@ -71,7 +71,7 @@ struct StepSyntax {
     std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
     std::vector<Expectation> expect;
     std::string file{};  ///< that the positions are in; empty: the workflow's
-    bool may_be_left_out = false;  ///< of variants without the values that `in` names
+    bool may_be_left_out = false;  ///< variants without the values that `in` names may omit the step
 
     /// How other steps refer to this one.
     const std::string& name() const { return id.empty() ? filter : id; }

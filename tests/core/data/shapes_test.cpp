@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The fixtures' own facts, computed here without geometry/topology.hpp: that one is tested *with* them.
+/// The fixtures' own properties, computed here without geometry/topology.hpp: that one is tested *with* them.
 #include "support/shapes.hpp"
 
 #include <gtest/gtest.h>

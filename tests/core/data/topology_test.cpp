@@ -216,7 +216,7 @@ TEST(Topology, SoupWithUnmergedCorners_IsAllBoundary) {
     EXPECT_EQ(facts.genus, 0);
 }
 
-/// Renaming vertices, reordering triangles and turning every triangle over changes no fact.
+/// Renaming vertices, reordering triangles and reversing all triangles changes no property.
 TEST(Topology, OfAShuffledMesh_IsTheSame) {
     const TriangleMesh mesh = without_triangles(torus(3, 1, 6, 9), {0, 1, 2, 40, 70});
     const MeshTopology expected = topology(mesh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store of results: what was kept comes back, what is damaged counts as missing and is told, what does not fit goes
-// in the order of its use, and a folder that cannot be written to does no harm.
+// The store of results: stored values come back, damaged ones count as missing, with a warning. Values that do not fit
+// are removed in the order of their last use, and a read-only folder does no harm.
 
 #include "scanmill/cache/cache.hpp"
 
@@ -158,7 +158,7 @@ TEST_F(CacheTest, BeyondItsLimit_WhatWasUsedLongestAgoGoes) {
         EXPECT_TRUE(cache.value(contents[0])) << "used now, so it is the youngest";
         EXPECT_EQ(cache.evict(), 0u) << "within the limit";
     }
-    Cache cache = open(150'000);  // of 240 kB
+    Cache cache = open(150'000);  // limit: 150 kB for 240 kB of values
     const u64 before = cache.info().bytes;
     EXPECT_GT(before, 240'000u);
     EXPECT_GT(cache.evict(), 0u);
@@ -223,7 +223,7 @@ TEST_F(CacheTest, HashOfAFile_IsRememberedOnceItHasSettled) {
     const fs::path file = folder_.write("scan.ply", "some bytes");
     const std::string hash = cache.file_hash(file);
     EXPECT_EQ(hash, content_hash(file));
-    // Rewritten in the same second, with the same size and times: only its bytes tell.
+    // Rewritten in the same second, with the same size and times: only the bytes differ.
     const auto written = fs::last_write_time(file);
     folder_.write("scan.ply", "same bytes");
     fs::last_write_time(file, written);

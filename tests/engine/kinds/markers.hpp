@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The kind `markers`: named places. Only tests have it. A module's own kind needs such a header, registered as below.
+/// The kind `markers`: named points. Only tests have it. A module's own kind needs such a header, registered as below.
 
 #include <string>
 #include <vector>

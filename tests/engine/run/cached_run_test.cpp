@@ -49,7 +49,7 @@ TEST_F(CachedRun, CommentsOrderAndNames_ChangeNothing) {
 
 TEST_F(CachedRun, ChangeThatMakesNoDifference_IsCutOffBelow) {
     run_two("factor: 2, length: 1 u", "factor: 3");
-    // Another mesh, which nobody takes, and the same points.
+    // Another mesh, which no step takes, and the same points.
     EXPECT_THAT(origins(run_two("factor: 2, length: 2 u", "factor: 3")), ElementsAre(cached, ran, same_inputs));
     EXPECT_THAT(origins(run_two("factor: 2, length: 2 u", "factor: 3")), ElementsAre(cached, cached, cached))
         << "from then on its plan is known too";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Units and lengths on their way through a run, and places far from zero.
+// Units and lengths on their way through a run, and positions far from zero.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Reads only the lengths that it is told to.
+/// Reads only the lengths that `reads` names.
 struct ReaderParams {
     std::string reads = "size";
     Length size = 2;

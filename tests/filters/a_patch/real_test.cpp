@@ -192,7 +192,7 @@ double degrees_between(const Vec3& one, const Vec3& other) {
 
 /// Compares the creases of a tessellation, away from triangles with tips and facets, with the object's sharp edges.
 struct CreaseFigures {
-    std::vector<double> distances;  ///< of middles of edges from the object's, ascending
+    std::vector<double> distances;  ///< distance from an edge's middle to the object's sharp edges, ascending
     std::vector<double>
         turned;  ///< degrees that the dihedral angle differs from that of the object's nearest edge, ascending
     /// Corners of edges of 20 degrees and more, and those whose normal is nearer to their own triangle's than to that

@@ -27,7 +27,7 @@ double length_off_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (p - a - share * (b - a)).norm();
 }
 
-/// A small mesh, decimated, with what the result stands for.
+/// A small mesh, decimated, with the points that the result represents.
 class Removals {
 public:
     Removals(const TriangleMesh& mesh, double max_error, double least_angle_degrees, bool flips)

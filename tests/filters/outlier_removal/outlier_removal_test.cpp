@@ -133,8 +133,8 @@ TEST(OutlierRemoval, PointAboveAPlane_Hovers) {
 }
 
 TEST(OutlierRemoval, LonePointInAFlatRegion_IsAPartOfTheSurface) {
-    // A square without its middle but for one point, as the vertices of a CAD model: nobody's neighbour, but in the
-    // plane.
+    // A square with a single point in its empty middle, like the vertices of a CAD model: no point has it as a
+    // neighbour, but it lies in the plane.
     std::vector<Vec3> points;
     for (const Vec3& p : square_grid(41, 1))
         if ((p - Vec3(20, 20, 0)).cwiseAbs().maxCoeff() > 2.5) points.push_back(p);

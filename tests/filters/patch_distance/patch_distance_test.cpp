@@ -192,7 +192,7 @@ TEST(PatchDistance, OfARoundRim_IsTheDistanceToTheCircle) {
             std::max(out, up) < 0 ? std::max(out, up) : std::hypot(std::max(out, 0.), std::max(up, 0.));
         const double error = std::abs(column->number(i) - wanted);
         // Inside, wall and top may be equally near within the error of the first tessellation. Where the way to the
-        // rim's part beside the next edge leaves the tetrahedra, the distance is that to the tessellation.
+        // boundary's part beside the next edge leaves the tetrahedra, the distance is that to the tessellation.
         EXPECT_LT(error, wanted < 0 && std::abs(out - up) < 5e-3 ? 5e-3 : 1.2e-3) << out << " " << up;
         worse += error > 3e-5;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// a-patch, tessellate and patch-distance stop soon after they are cancelled, at every place where they ask.
+/// a-patch, tessellate and patch-distance stop soon after they are cancelled, at every point where they check.
 
 #include <gtest/gtest.h>
 

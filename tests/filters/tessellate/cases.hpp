@@ -17,7 +17,7 @@ inline TriangleMesh tessellated(const PatchComplex& patches, u32 subdivision, st
     return tessellated(patches, TessellateParams{subdivision, max_error});
 }
 
-/// Closed, with the topology of `mesh`, every directed edge once against its opposite, no two vertices in one place.
+/// Closed, with the topology of `mesh`, every directed edge once against its opposite, no two vertices at one position.
 inline void expect_closed(const TriangleMesh& result, const TriangleMesh& mesh) {
     const MeshTopology found = topology(result), wanted = topology(mesh);
     EXPECT_TRUE(found.closed);

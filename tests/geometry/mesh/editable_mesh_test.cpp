@@ -95,7 +95,7 @@ bool is_surface(std::size_t vertices, const Triangles& triangles) {
 void expect_as_built_anew(const EditableMesh& mesh) {
     const EditableMesh anew(abstract_mesh(mesh.vertices(), triangles_of(mesh)));
     ASSERT_EQ(mesh.triangles(), anew.triangles());
-    std::vector<u32> rows;  // of `mesh`, by those of `anew`
+    std::vector<u32> rows;  // row in `mesh`, by row in `anew`
     for (u32 row = 0; row < mesh.rows(); ++row)
         if (!mesh.is_empty(row)) rows.push_back(row);
     ASSERT_EQ(rows.size(), anew.rows());

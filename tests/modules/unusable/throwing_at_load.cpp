@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A static object throws while the loader is still at work, where nobody can catch it.
+// A static object throws while the loader is still at work, where no handler can catch it.
 
 #include <stdexcept>
 

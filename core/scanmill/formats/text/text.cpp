@@ -233,7 +233,7 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
 /// No row is shorter than three digits with separators and a line end.
 constexpr std::size_t most_rows = std::size_t(1) << 16, shortest_row = std::string_view("1 2 3\n").size();
 constexpr std::size_t piece_size = std::size_t(1) << 18;
-/// Longer pieces have no LF: the text is not streamed.
+/// A longer chunk contains no LF, so the text is not streamed.
 constexpr std::size_t longest_piece = most_rows * shortest_row;
 
 /// Thrown and caught in this file, for content that the reader of whole files refuses or warns about.

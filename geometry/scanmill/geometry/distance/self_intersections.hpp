@@ -19,7 +19,7 @@ struct SelfIntersections {
 };
 
 /// Pairs of triangles that intersect as triangles_intersect() defines it, where vertices at one position count as one
-/// vertex: a soup has the pairs of the mesh that it draws. Of the pairs the first `most_pairs` are returned.
+/// vertex: a soup has the same pairs as the mesh that it draws. Only the first `most_pairs` pairs are returned.
 ///
 /// Pre: finite coordinates; `tree` is over exactly these positions and triangles. Nothing depends on the number of
 /// threads. Cost: O(F log F) plus one test for each pair of overlapping boxes; about 1 µs per triangle of a good mesh.

@@ -233,7 +233,7 @@ bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners
 
 std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const TriangulationLimits& limits) {
-    // First without obstacles: there are few, and if there is no triangulation then, there is none with obstacles.
+    // The first attempt ignores obstacles: there are few, and if it finds no triangulation, none exists with obstacles.
     const NearTriangles none;
     std::vector<Triangle> triangles = least_triangulation(surface, none, corners, limits);
     if (triangles.empty()) return {};

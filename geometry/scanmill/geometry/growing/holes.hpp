@@ -29,7 +29,7 @@ bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners
 
 /// The triangles of least total area that close the loop of `corners` (each once, counter-clockwise as the triangles
 /// will be). Empty when no triangulation was found that keeps the limits, repeats no edge of the surface, and
-/// intersects neither the surface nor itself. Of equal ones the one that joins the first corners. Parts of the loop are
+/// intersects neither the surface nor itself. Ties: the one that joins the first corners. Parts of the loop are
 /// solved first and separately, so a triangulation whose parts are not optimal is not found.
 ///
 /// `near` is working memory. Cost: at most corners³ / 6 triangles; those that would lower the area are tested against

@@ -184,7 +184,7 @@ struct Surface {
 
     /// Adds a → b → c. Pre: none of its three half-edges has a triangle.
     void add(const Triangle& triangle, Pass pass);
-    /// Removes triangles that were already removed from the fans from the list. Of equal ones the oldest is removed.
+    /// Removes from the list the triangles that were removed from the fans. Ties: the oldest is removed.
     void drop(std::vector<Triangle> removed);
 };
 
@@ -197,9 +197,9 @@ bool has_angles_of(const Surface& surface, const Triangle& triangle, double leas
 bool agrees_with_points(const Surface& surface, const Triangle& triangle, const Vec3& normal, double point_cosine,
                         double sharp_cosine);
 
-/// Removes triangles until those of every vertex form one fan, open or closed. Of several fans the one with most
-/// triangles stays, of equal ones the one with the lowest vertex. Returns the number of removed triangles. Cost:
-/// linear.
+/// Removes triangles until those of every vertex form one fan, open or closed. If a vertex has several fans, the one
+/// with most triangles stays, or among equal ones the one with the lowest vertex. Returns how many triangles were
+/// removed. Cost: linear.
 std::size_t remove_extra_fans(Surface& surface);
 
 }  // namespace scanmill::growing

@@ -22,8 +22,8 @@ double rough_share(const TriangleMesh& mesh);
 /// the holes of its
 ///   base); those of scans that lack a side, or of which a few distant points decide, have 0.11 to 0.6.
 /// - spanned_share() of four edges is above a thousandth, and the genus is not 0: a handle may be a bridge over a gap,
-///   and a filled tunnel lies in one. Of the virtual scans of bench/quality/raw-scans.md, right surfaces have no edge
-///   of four medians, those of wrong genus have one of six or more.
+///   and a filled tunnel lies in one. Among the scans of bench/quality/raw-scans.md, right surfaces have no edge
+///   of four medians, and those of wrong genus have one of six or more.
 /// - rough_share() is above 0.15, on more than 10,000 edges: of few points, coarse sampling looks the same. Surfaces of
 ///   clean scans reach 0.02, of raw overlapping views 0.08; crumpled ones, through outliers or noise as large as the
 ///   spacing, have 0.18 to 0.3.

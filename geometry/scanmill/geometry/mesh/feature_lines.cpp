@@ -147,7 +147,7 @@ private:
         }
         for (u32 number = 0; number < vertices_.size(); ++number) {
             if (!(angles[number] > corner_angle)) continue;
-            bool is_largest = true;  // of equal angles that of the lower number
+            bool is_largest = true;  // ties: the lower number
             for (const Crease& crease : creases_[number])
                 walk(number, crease, reach, [&](u32 other) {
                     const bool is_near = (position(other) - position(number)).norm() < reach;

@@ -31,7 +31,7 @@ namespace scanmill {
 /// mesh with few triangles between its creases also counts as one without noise, as does one with less than a billionth
 /// of the diagonal: rounding.
 ///
-/// Vertices near a boundary, and where rings of neighbours do not widen, are not used. Of meshes with more than 10,000
+/// Vertices near a boundary, and where rings of neighbours do not widen, are not used. In meshes with more than 10,000
 /// vertices, 5,000 to 10,000 are used, chosen by position.
 ///
 /// Pre: finite positions; `opposite` by half_edges::opposites(). The same bits for any order of vertices and triangles
