@@ -32,7 +32,7 @@ struct APatchParams {
     /// Least weight of the changes of the slopes, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
-    /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
+    /// Height of an apex over its triangle, as a multiple of the least one; 0.15 inradii are added. 1.05 to 3.
     double apex_factor = 1.5;
 };
 

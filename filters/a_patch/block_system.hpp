@@ -42,7 +42,7 @@ public:
     /// For each row, the sum of the values over the rows that its equation contains.
     std::vector<double> sums_of_neighbours(std::span<const double> values) const;
 
-    /// What the row's equation leaves for its own unknowns, the others being `x`.
+    /// Right-hand side of the row's equation for its own unknowns, with `x` for the others.
     Vector remainder(u32 row, const std::vector<Vector>& x) const;
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What holds for patches, computed from the tetrahedra alone.
+/// Checks of patches, computed from the tetrahedra alone.
 
 #include "a_patch/weights.hpp"
 

@@ -29,7 +29,7 @@ struct HullFace {
     double radius = 0;      ///< of the inscribed circle
     std::array<double, 2> least{};   ///< by Side: above it the signs at the apex are right
     std::array<double, 2> height{};  ///< by Side
-    /// By Side: the most that the next sheet of the mesh above the base point allows.
+    /// By Side: largest height that the next sheet of the mesh above the base point allows.
     std::array<double, 2> limit{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     bool is_thin = false;  ///< whether an apex must be higher than `limit` by the next sheet
     std::array<u32, 3> edges{};      ///< edge i goes from corner i to the next
@@ -68,7 +68,7 @@ enum class Split {
     where_needed  ///< where one tetrahedron per side cannot join its neighbours with equal gradients
 };
 
-/// Where a hull is not as it should be; numbers ascend.
+/// Defects of a hull; numbers ascend.
 struct HullFaults {
     std::vector<u32> thin;  ///< triangles too near to the next sheet
     std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out

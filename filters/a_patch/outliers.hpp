@@ -12,7 +12,7 @@ namespace scanmill::a_patches {
 /// points. Not that of all points, which is 0 on an object with many exactly flat triangles, and too large or too small
 /// where noise varies. Infinite distances do not count. Cost: linear.
 ///
-/// `neighbours`: by triangle; indices that are not of a triangle are ignored.
+/// `neighbours`: by triangle; indices of no triangle are ignored.
 std::vector<double> outlier_distances(std::span<const double> distances, std::span<const u32> triangle_of_point,
                                       std::span<const std::array<u32, 3>> neighbours);
 

@@ -74,7 +74,7 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
             {{corner_normal(half), is_border ? corner_normal(half) : corner_normal(half_edges::after(other))},
              {corner_normal(half_edges::after(half)),
               is_border ? corner_normal(half_edges::after(half)) : corner_normal(other)}}};
-        // What the tangent at an end lacks of d.
+        // The difference between d and the tangent at an end.
         const auto missing = [&](const std::array<Vec3, 2>& n) -> Vec3 {
             const Vec3 crease = n[0].cross(n[1]);
             if (!is_sharp || crease.norm() < least_sine_of_crease) return d.dot(n[0]) * n[0];

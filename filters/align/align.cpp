@@ -217,7 +217,7 @@ void require_determined(const Fit& fit, std::string_view unit) {
 
 // Normals and rectangles.
 
-/// The unit normal of every row, zero where it has none; nothing without a column of normals.
+/// The unit normal of every row, zero where it has none; empty without a column of normals.
 std::optional<Points> normals_of(const PointCloud& cloud) {
     const Column* column = cloud.columns.find("normal");
     if (!column || column->components() != 3) return {};

@@ -46,7 +46,7 @@ struct AlignResult {
     double rms = 0, largest_residual = 0;
     /// Size of the target relative to the source by Umeyama's method: 1 where both are equally large.
     double scale = 1;
-    /// Standard error of a moved point, the largest over the corners of the part's box; nothing without a part.
+    /// Standard error of a moved point, the largest over the corners of the part's box; empty without a part.
     std::optional<double> error_at_part;
 };
 

@@ -53,7 +53,7 @@ public:
     /// As defined by alpha_solid(): the solid has enough points, a manifold boundary, and is one component where that
     /// was requested.
     bool is_valid(const Selection& selection) const;
-    /// The valid alpha-solid whose radii are nearest to the root of `value`; of two equally near the larger. Pre: the
+    /// The valid alpha-solid whose radii are nearest to the root of `value`; ties: the larger one. Pre: the
     /// one at `value` is not valid. Cost: as scan(), over all radii from alpha_cover to that distance above `value`.
     AlphaRange nearest_valid(double value) const;
 

@@ -3,7 +3,7 @@
 /// The order in which points are inserted: slice after slice, and within a slice by distance.
 ///
 /// Slicing planes are perpendicular to an axis, `slice` apart, the first through the lowest point. A point belongs to
-/// the nearest plane, of two equally near ones to the upper one. Points are not projected.
+/// the nearest plane, ties: to the upper one. Points are not projected.
 ///
 /// Source: Sangveraphunsiri, Srirakulchai 2006, section 2.1.
 

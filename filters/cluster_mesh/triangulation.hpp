@@ -51,7 +51,7 @@ enum class Outcome {
 
 class Triangulation {
 public:
-    /// `up`: of first triangles, the side that their normals are on.
+    /// `up`: the side that the first triangles' normals point to.
     Triangulation(Surface& surface, double max_edge, const Vec3& up, const WinnerLimits& winner);
 
     /// Adds triangles at a point that is in none. `near`: all other points at a distance below max_edge, ascending by

@@ -33,7 +33,7 @@ constexpr double steering_share = 1 - 0x1p-10;
 /// have sufficed, at most so often.
 constexpr double again_share = 0.98;
 constexpr int most_attempts = 4;
-/// Share of the diagonal. A smaller largest error is none: the certificate cannot prove so much.
+/// Least error bound, as a share of the diagonal: the certificate cannot prove a smaller one.
 constexpr double negligible = 1e-10;
 
 void require_angle(const char* name, const Angle& angle, double least, double most) {
@@ -50,7 +50,7 @@ double length_of(const char* name, const Length& length) {
     return value;
 }
 
-/// `share`: of the largest errors.
+/// `share`: allowed share of the largest errors.
 Limits limits_for(const DecimateParams& params, double share, double rounding) {
     require_angle("sharp-angle", params.sharp_angle, 20, 75);
     require_angle("corner-angle", params.corner_angle, 0, 180);

@@ -37,13 +37,13 @@ struct DecimateParams {
     Angle min_angle = Angle::degrees(15);
     /// Vertices with more edges are not removed, and none gets more. 6 to 64.
     u32 max_valence = 25;
-    /// Removal ends with at most so many triangles; 0: only the errors end it.
+    /// Removal stops once at most this many triangles are left; 0: only the errors stop it.
     u64 target_triangles = 0;
     /// Whether edges are flipped in the end, within the same limits, to raise the triangles' least angles.
     bool final_flips = true;
 };
 
-/// The column `class` of vertices. A vertex of several classes has the first of corner, boundary, crease.
+/// The column `class` of vertices. If several classes apply, the first of corner, boundary, crease counts.
 enum class VertexClass : u8 {
     smooth,  ///< without feature edges
     crease,  ///< between two sharp edges of one line
@@ -78,7 +78,7 @@ struct DecimateResult {
 ///       Lines of sharp edges and boundaries stay lines between vertices of theirs, with no part of the input's lines
 ///       farther than max_error; corners stay. Roughness is no feature: see feature_network.hpp.
 ///       The new triangles intersect only what the triangles they replace intersected.
-/// Ties: of equal estimates the vertex with the lower number goes first; of equally good triangulations the first.
+/// Ties: among equal estimates the lower vertex number; among equally good triangulations the first.
 /// Bytes do not depend on the number of threads.
 /// Cost: O(n log n) time; about 40 µs per removed vertex with one thread. About 340 bytes per triangle, the input's own
 /// included.

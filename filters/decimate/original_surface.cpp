@@ -24,7 +24,7 @@ bool OriginalSurface::add_path(u32 from, u32 to, const Vec3& up, const SignedErr
         return Vec3(position(right.vertex) + share * (position(left.vertex) - position(right.vertex)));
     };
 
-    // The edge opposite to `from` by which the plane leaves its triangles; of several the farthest towards `to`.
+    // The edge opposite to `from` by which the plane leaves its triangles; if several, the farthest towards `to`.
     u32 crossed = half_edges::boundary;
     double farthest = 0;
     u32 half_edge = features_.first(from);

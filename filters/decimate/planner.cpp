@@ -261,7 +261,7 @@ bool Planner::intersects(const Edit& edit, u32 stamp) {
             for (std::size_t i = 0; i < boxes_.size(); ++i)
                 count += meet(box, boxes_[i]) && intersect(edit.triangles[i], other);
             if (count == 0) return;
-            // What intersected before may go on.
+            // Intersections that existed before are allowed.
             for (const u32 old : edit.old_rows) count -= intersect(surface_.mesh().triangle(old), other);
             found = count > 0;
         },

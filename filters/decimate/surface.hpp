@@ -54,7 +54,7 @@ public:
     /// Whether the edge between two vertices represents a part of a feature line. Pre: it is an edge of the mesh.
     bool is_feature(u32 half_edge) const;
 
-    /// Pre: planned on the mesh as it is. `stamp`: of the changed boxes. Appends the new rows.
+    /// Pre: planned on the mesh as it is. `stamp`: marks the changed boxes. Appends the new rows.
     void apply(const Edit& edit, u32 stamp, std::vector<u32>& new_rows);
     /// Builds the tree of boxes anew if most triangles are gone.
     void tidy();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What must be true of parameters, surfaces and frames before anything is measured. Every Error has a hint.
+/// Preconditions of measuring: parameters, surfaces and frames. Every Error has a hint.
 
 #include <string>
 #include <string_view>

@@ -130,7 +130,7 @@ struct Guessed {
     std::size_t components = 0, positions = 0;
 };
 
-/// Gives the highest position of every component without a side its side. `count`: of all components.
+/// Orients the highest position of each component that has no side yet. `count`: number of components.
 Guessed seed_components(std::span<const Vec3> positions, const NormalField& field, DisjointSets& components,
                         std::vector<signed char>& sides, std::size_t& count) {
     struct Component {

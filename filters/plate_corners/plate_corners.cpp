@@ -44,7 +44,7 @@ std::vector<u32> rows_near(const Plane& plane, std::span<const Vec3> positions, 
     return near;
 }
 
-/// By samples of three points; of equally good planes the first. Nothing if all samples are on lines.
+/// Tries planes through three sampled points; ties: the first. Empty if all samples are collinear.
 std::optional<Plane> sampled_plane(std::span<const Vec3> positions, std::span<const u32> rows, double tolerance,
                                    Random random, Context& context) {
     std::vector<Vec3> sample;

@@ -24,7 +24,7 @@ struct PlateCornersParams {
 
 struct PlateCornersResult {
     /// Four points, counter-clockwise seen from the upper side, in the frame of the input. The first is that with the
-    /// smallest x + y + z; of equal ones that with the smallest x, then y. Column `normal`: of the upper side.
+    /// smallest x + y + z; ties: smallest x, then y. Column `normal`: the upper side's.
     PointCloud corners;
     /// Root of the mean squared distance of the points at the border from the sides between the corners.
     double residual = 0;

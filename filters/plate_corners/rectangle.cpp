@@ -55,7 +55,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
 /// Counter-clockwise.
 using Corners = std::array<Vec2, 4>;
 
-/// One of its sides lies on an edge of the hull (Freeman and Shapira 1975); of equal ones the first.
+/// One of its sides lies on an edge of the hull (Freeman and Shapira 1975); ties: the first.
 Corners smallest_rectangle(std::span<const Vec2> hull) {
     Corners best;
     double least = std::numeric_limits<double>::infinity();

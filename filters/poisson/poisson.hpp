@@ -51,7 +51,7 @@ struct PoissonResult {
 /// Density. That of a vertex is (m / d)², where d is the distance to its 8th nearest position of the points (to the
 /// last one if there are fewer), and m the median, over all positions, of the distance to the 8th nearest other one. It
 /// is about 1 where points are as dense as usual, and 1/100 where they are ten times as far away. The floor(trim ×
-/// #vertices) vertices of least density are removed, of equal ones those of the lowest row, with their triangles.
+/// #vertices) vertices of least density are removed, with their triangles; ties: the lowest rows.
 ///
 /// Invented. A vertex is far from all points if its distance to the nearest one is more than twice the distance from
 /// there to the 8th nearest other one. Every triangle counts as invented in the share of its vertices that are far.

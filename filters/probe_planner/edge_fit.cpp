@@ -92,7 +92,7 @@ void divide(std::vector<Facet>& facets) {
     for (Facet& facet : facets) facet.side = across.dot(facet.normal - mean) > 0 ? Side::first : Side::second;
 }
 
-/// Gives every facet the side that all its corners are nearer to. Whether a side changed.
+/// Assigns each facet to the plane that all its corners are nearer to. Returns whether any changed.
 bool divide_anew(std::vector<Facet>& facets, const Plane& first, const Plane& second) {
     const auto side_of = [&](const Vec3& corner) {
         const double to_first = std::abs(first.normal.dot(corner - first.centre)),

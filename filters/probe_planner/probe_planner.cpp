@@ -238,7 +238,7 @@ private:
         return direction(phi).dot(settings_.probe.axis) >= settings_.least_cosine;
     }
 
-    /// Nothing if the probe would meet the part elsewhere.
+    /// Empty if the probe would meet the part elsewhere.
     std::optional<ProbeTouch> touch_at(double phi) const {
         const double r = settings_.probe.radius;
         ProbeTouch touch = touch_;

@@ -200,7 +200,7 @@ bool is_same_edge(const ReferencePoint& a, const ReferencePoint& b, double error
 }
 
 /// Leaves out points of other lines on the same edge that are nearer than three quarters of a spacing; those of the
-/// longest chain stay. `lengths`: of the chains.
+/// longest chain stay. `lengths`: the chains' lengths.
 ///
 /// Points at random, each kept if no kept one is nearer than x spacings, are 0.7476 / x per spacing in the end (Rényi
 /// 1958): 1.0 for three quarters, 1.5 for a half. Gaps are at most twice as long.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Where the edges are touched: reference points along feature lines, with the edge's direction and the normals of both
+/// Touch points on edges: reference points along feature lines, with the edge's direction and the normals of both
 /// faces there.
 ///
 /// Directions and normals are length-weighted means over a window of two segments on either side of the point's

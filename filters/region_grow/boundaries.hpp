@@ -20,7 +20,7 @@ struct ThinParts {
 /// The opposite sheet of a boundary point is the nearest point of the surface whose normal differs by more than 120
 /// degrees, and that lies across the surface rather than beside the point. Beyond a sharp fold it may be near along the
 /// surface, too. The relative orientation of two components is not known, so between them equal normals count as well.
-/// The voxel size follows from the search radius; of equal distances the smaller one is reported. With given normals
+/// The voxel size follows from the search radius; ties: the smaller one. With given normals
 /// whose signs count, no loop is counted.
 ///
 /// Pre: every vertex has one fan; search radii follow from voxel sizes. Cost: a radius search per boundary point.

@@ -38,7 +38,7 @@ std::optional<Vec3> direction(const Column& column, u32 row) {
     return (normal / largest).normalized();
 }
 
-/// Per point the normal of its row; of several rows the first by x, y, z, whatever their order.
+/// Per point the normal of its row; if it has several rows, the first by x, y, z.
 std::vector<std::optional<Vec3>> directions_of(const Column& column, const DistinctPoints& points) {
     std::vector<std::optional<Vec3>> directions(points.size());
     for (u32 point = 0; point < points.size(); ++point) directions[point] = direction(column, points.rows[point]);

@@ -26,7 +26,7 @@ struct GivenNormals {
 GivenNormals take_given_normals(const PointCloud& cloud, const DistinctPoints& points,
                                 const Neighbourhoods& neighbourhoods, PointNormals& normals, Context& context);
 
-/// By more than 154 degrees. Ridges and grooves down to 26 degrees have no neighbours that differ by so much.
+/// Neighbours whose normals differ by over 154 degrees; ridges and grooves above 26 degrees have none.
 bool are_opposed(const Vec3& one, const Vec3& other);
 
 /// Counts points whose normal is opposed to that of their nearest neighbour, by where the neighbour lies.

@@ -46,7 +46,7 @@ SearchRadii automatic_radii(const DistinctPoints& points, const Neighbourhoods& 
 /// The voxel size whose thinning would leave points with the present median density.
 double equivalent_voxel_size(const Surface& surface, unsigned threads);
 
-/// Per point the size in the column `bin-size`, of several rows the smallest; 0 where none is finite and above 0. Empty
+/// Per point the size in the column `bin-size`, the smallest of its rows; 0 where none is finite and above 0. Empty
 /// without the column and, with a warning, when it is not one number per row.
 Array<double> given_voxel_sizes(const PointCloud& cloud, const DistinctPoints& points, Context& context);
 

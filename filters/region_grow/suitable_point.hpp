@@ -105,7 +105,7 @@ private:
     /// Call between rate() and take_best(): orders the candidates, with none rejected.
     void start_ranking();
     bool has_candidates() const { return !candidates_.empty() || !equal_.empty(); }
-    /// Removes the candidate with the lowest score, of equal ones the lowest number. Pre: has_candidates().
+    /// Removes the candidate with the lowest score; ties: the lowest number. Pre: has_candidates().
     Candidate take_best();
 
     bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed);

@@ -290,7 +290,7 @@ private:
                                       count_text(result_.left_without_area, "triangle stays", "triangles stay")));
     }
 
-    /// Where a triangle that is gone was all that joined two fans.
+    /// Splits vertices where a removed triangle was all that joined two fans.
     void separate_parts() {
         const std::vector<Triangle> before = triangles_;
         separate_fans();

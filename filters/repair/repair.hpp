@@ -39,7 +39,7 @@ struct RepairResult {
 
 /// 1. Stitch. Vertices at one position become the one with the lowest row. With `stitch` above 0, each vertex on the
 ///    boundary (of an edge with one triangle) then joins the nearest vertex on the boundary that stayed before it, in
-///    order of rows, if that is at most `stitch` away; of equally near ones the lower row. The vertex that stays keeps
+///    order of rows, if that is at most `stitch` away; ties: the lower row. The vertex that stays keeps
 ///    its position and its values.
 /// 2. Triangles with a repeated vertex are removed, and of triangles with the same three vertices, in any order, all
 ///    but the first.

@@ -45,7 +45,7 @@ public:
           criteria_(criteria),
           waiting_(solid.tets()) {}
 
-    /// The best chain that begins with the cell; of equal ones that with the lower cells. None unless the cell has two
+    /// The best chain that begins with the cell; ties: the one with the lower cells. None unless the cell has two
     /// open facets. Pre: `open` are its open facets.
     Chain best_from(u32 cell, unsigned open) const;
 

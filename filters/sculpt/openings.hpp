@@ -27,7 +27,7 @@ public:
     Opening next();
 
     enum class Reason { blocked, deep };
-    /// Why an interior point was not reached.
+    /// Reason why an interior point was not reached.
     Reason reason(u32 vertex);
     /// Vertices of the solid that are not on its boundary, ascending.
     Array<u32> interior_points();

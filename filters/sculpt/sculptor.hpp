@@ -31,7 +31,7 @@ private:
     bool expose();
     bool open();
     void remove(u32 cell, SculptStep step) { remove(cell, step, criteria_.gains().of(cell, solid_.open_facets(cell))); }
-    /// `gain`: of removing the cell now.
+    /// `gain`: the gain of removing the cell now.
     void remove(u32 cell, SculptStep step, double gain);
     bool is_current(const WaitingStep& step) const {
         return solid_.has(step.cell) && evaluated_[step.cell] == step.time;

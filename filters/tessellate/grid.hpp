@@ -50,7 +50,7 @@ private:
     std::vector<u32> before_;  ///< inner points of a third in the rows before
 };
 
-/// The inner vertex of an undivided triangle of level n >= 3, with so many steps from corner 0 to corners 1 and 2.
+/// The inner vertex of an undivided triangle of level n >= 3, given by its steps from corner 0 to corners 1 and 2.
 inline u32 grid_vertex(u32 i, u32 j) { return (i + j - 1) * (i + j - 2) / 2 + j - 1; }
 
 /// Triangles between a row on an edge and a row inside the triangle, both in the edge's direction: the row with the
@@ -127,7 +127,7 @@ void connect(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&&
     grid.is_triangular ? connect_triangular(grid, first, edges, add) : connect_thirds(grid, first, edges, add);
 }
 
-/// How fine a grid becomes.
+/// Limits of a grid's refinement.
 struct Fineness {
     std::optional<double> max_error;  ///< nothing: as fine as the grid's segments, or those of its edges
     unsigned most = 1;  ///< segments

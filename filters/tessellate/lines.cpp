@@ -13,7 +13,7 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Where a cubic whose sign changes at most once gets the sign; `never`: nowhere.
+/// Parameter at which a cubic with at most one sign change gets the sign; `never`: none.
 double change_to(double sign, const std::array<double, 4>& weights, double zero) {
     if (sign * weights[3] < 0) return never;
     if (sign * weights[0] >= -zero) return 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Where lines from the mesh to the apexes meet the surface.
+/// Intersections of lines from the mesh to the apexes with the surface.
 
 #include <array>
 #include <optional>

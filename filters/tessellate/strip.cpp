@@ -184,7 +184,7 @@ private:
     }
 
     /// The place where the function changes, between one where the first triangle's holds and one where the second's
-    /// does: the nearest numbers on both sides of it. Nothing if the crease leaves the tetrahedra beside the edge.
+    /// does: the nearest numbers on both sides of it. Empty if the crease leaves the tetrahedra beside the edge.
     std::optional<std::array<Place, 2>> change(const Sample& sample) const {
         Place low{1, 0}, high{1, 1};
         const bool is_whole = is_whole_[0] || is_whole_[1];

@@ -106,7 +106,7 @@ private:
 
     // Levels.
 
-    /// Lifts all points with at most so many segments per edge. Returns the largest distance that is found between the
+    /// Lifts all points with at most `most` segments per edge. Returns the largest distance that is found between the
     /// triangles and the surface.
     double build(unsigned most) {
         strips_.assign(structure_.edges.size(), {});

@@ -40,7 +40,7 @@ struct VirtualProbeResult {
 ///
 /// A touch is missed, and reports nothing, if the centre passes T by r + scanner_error without contact, or if the ball
 /// meets the mesh at its start. The stylus is not simulated: probe-planner has checked it. The mesh needs no topology,
-/// and distances have no sign; of equally near triangles any gives the same contact.
+/// and distances have no sign; equally near triangles give the same contact.
 ///
 /// Throws Error for a mesh without triangles, with a NaN or infinite vertex or an index out of range; for a plan of
 /// another frame or unit than the mesh, without a touch that is made, with a radius that is not above 0 or directions

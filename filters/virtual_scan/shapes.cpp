@@ -235,7 +235,7 @@ struct Hyperboloid {
     double radius, height;
 };
 
-/// The roots of a x² + b x + c, ascending, as many as there are; without the cancellation of the textbook formula.
+/// The real roots of a x² + b x + c, ascending; without the cancellation of the textbook formula.
 std::vector<double> roots_of(double a, double b, double c) {
     if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / b};
     const double square = b * b - 4 * a * c;

@@ -22,7 +22,7 @@ struct OctreeChoice {
 ///
 /// The root is the smallest cell that holds all points. A cell is divided while it holds more than one point and its
 /// edge is above the smallest of its points' sizes, at most 21 times; throws Error when that is not enough. In a leaf
-/// the point nearest the centre is kept, of equal ones the lowest row.
+/// the point nearest the centre is kept, ties: the lowest row.
 ///
 /// Pre: sizes[size_of_row[row]] is the size that a row allows, above 0.
 /// Cost: a sort, and the depth of the tree in passes over the points; 16 bytes per point.

@@ -146,7 +146,7 @@ void doubt_few(const VoxelThinResult& result, std::size_t points, Context& conte
             result.kept.size(), points, result.bin_size, symbol(result.points.frame.unit)));
 }
 
-/// Every so many-th point, taken while the points are read.
+/// Every n-th point, taken while the points are read.
 class SpreadSample {
 public:
     explicit SpreadSample(const PointChunks& points)

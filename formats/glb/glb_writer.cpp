@@ -123,7 +123,7 @@ void GlbModel::add_material() {
     material().doubleSided = true;
 }
 
-/// Throws Error when so much binary data does not fit: the format has 32-bit sizes.
+/// Throws Error when the binary data do not fit: the format has 32-bit sizes.
 void require_fits(u64 bytes) {
     constexpr u64 most = std::numeric_limits<u32>::max(), reserved_for_json = u64(1) << 20;
     if (bytes > most - reserved_for_json)

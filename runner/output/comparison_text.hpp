@@ -11,7 +11,7 @@
 namespace scanmill::runner {
 
 /// A screen: the verdict, counts, runs, version, machine, what changed, what failed and why, the matrix of one metric,
-/// and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`: of the terminal;
+/// and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`: the terminal's;
 /// nothing: any.
 std::string comparison_text(const Comparison& comparison, const std::string& metric, std::optional<std::size_t> width);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How errors and findings leave the program: sentences on stderr, and with --json an object on stdout as well, so that
+/// Output of errors and findings: sentences on stderr, and with --json an object on stdout as well, so that
 /// a program that reads the output always gets one.
 
 #include <nlohmann/json_fwd.hpp>

@@ -228,7 +228,7 @@ void Progress::output_written(const RunCell& cell, const OutputReport& report) {
 
 void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     const std::scoped_lock lock(mutex_);
-    // What the cell did not do will not be done, unless another cell needs it.
+    // Remaining work of the cell is dropped unless another cell needs it.
     for (const std::size_t node : cell.nodes)
         if (--cells_left_[node] == 0) {
             if (!is_settled_[node]) time_left_.dropped(node);

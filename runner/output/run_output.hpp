@@ -20,7 +20,7 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>&
 Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 
 /// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files. Cells of
-/// one scan whose file could not be read share a row. `width`: of the terminal; nothing: any.
+/// one scan whose file could not be read share a row. `width`: the terminal's; empty: any.
 std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width = {});
 Json report_json(const RunGraph& graph, const RunReport& report);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How messages name steps and cells: by scan and, where there are several, by workflow and variant.
+/// Names of steps and cells in messages: by scan and, where there are several, by workflow and variant.
 
 #include <string>
 #include <vector>

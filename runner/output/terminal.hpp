@@ -50,7 +50,7 @@ public:
     /// The cells of this column are cut in the middle if the table is wider than the terminal. With several such
     /// columns, the first named is cut first.
     void may_cut(const std::string& header);
-    /// With a trailing newline; no blanks at line ends. `width`: of the terminal; nothing: any.
+    /// With a trailing newline; no blanks at line ends. `width`: the terminal's; empty: any.
     std::string text(std::optional<std::size_t> width = {}) const;
 
 private:

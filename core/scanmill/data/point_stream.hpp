@@ -48,7 +48,7 @@ protected:
     PointStream() = default;
     /// Throws the Error of a file that changed.
     [[noreturn]] static void throw_changed();
-    /// Reads the world positions of a piece, as many as the file has now; returns their bounds.
+    /// Reads the world positions of a piece, as far as the file now has them; returns their bounds.
     virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& positions) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
     /// Sets the frame's origin as readers do, and the boxes relative to it. Pre: world_ bounds all pieces.

@@ -50,7 +50,7 @@ enum class InvalidRows {
 };
 /// "refuse" and "drop"; empty for by_format.
 std::string_view name_of(InvalidRows rule);
-/// Nothing for other texts than "refuse" and "drop".
+/// nullopt for texts other than "refuse" and "drop".
 std::optional<InvalidRows> invalid_rows_named(std::string_view name);
 
 template <class Geometry>

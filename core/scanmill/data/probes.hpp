@@ -16,7 +16,7 @@
 
 namespace scanmill {
 
-/// Why a touch is not made; `none` if it is.
+/// Reason why a touch is not made; `none` if it is made.
 enum class ProbeReason : u8 {
     none,
     concave,  ///< the interior angle is pi or more
@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 5> names_of(const ProbeReason*) {
 enum class ProbeContact : u8 {
     none,  ///< not simulated: the touch is not made
     edge,  ///< the part, near T
-    elsewhere,  ///< the part too far from T, or the stylus meets the part
+    elsewhere,  ///< the part is met too far from T, or by the stylus
     missed  ///< nothing
 };
 constexpr std::array<std::string_view, 4> names_of(const ProbeContact*) {

@@ -24,7 +24,7 @@ struct LengthScale {
     std::function<double()> diagonal, spacing;
 };
 
-/// How quantities are written, for messages.
+/// The notations of quantities, for messages.
 inline constexpr std::string_view length_examples = "0.2 mm, 0.1 %diag, 3 spacing or 0.5 u";
 inline constexpr std::string_view angle_examples = "40 deg or 0.7 rad";
 inline constexpr std::string_view ratio_examples = "5 % or 0.05";

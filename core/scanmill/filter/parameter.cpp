@@ -39,7 +39,7 @@ std::vector<std::string> choice_names(const ParameterSpec& spec) {
     return names;
 }
 
-/// What messages and parsing need of a type.
+/// The properties of a type that messages and parsing need.
 struct TypeRow {
     std::string_view noun, example;
     ParameterScalar (*parse)(const ParameterSpec& spec, const std::string& text);

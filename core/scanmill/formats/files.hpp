@@ -70,7 +70,7 @@ std::string write_bytes(const std::filesystem::path& name, const Value& value, c
 /// Whether files with this extension ("ply" or ".PLY") can be written from values of this kind.
 bool can_write(std::string_view extension, Kind kind);
 
-/// Why the module for files with this extension cannot be used; empty when it can, and for other extensions.
+/// The reason why the module for this extension cannot be used; empty if it can, and for other extensions.
 std::string why_unusable(std::string_view extension);
 
 /// Names of the kinds that read_file() returns: points, mesh, and those with a JSON form.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What every module exports, of filters and of file formats: plain C data, compared before the module is called.
+/// The data that every filter or format module exports: plain C data, compared before the module is called.
 
 #include <Eigen/Core>
 #include <string>

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-/// What a rule needs to know of its metric.
+/// The properties of a metric that rules need.
 struct Gated {
     Unit unit;
     Better better;

@@ -27,7 +27,7 @@ public:
     /// Throws Error if the file cannot be written.
     void put(const ValueSlot& slot, const EncodedValue& value);
     bool contains(const ValueSlot& slot) const;
-    /// Nothing if it is not there. Throws Error for a damaged file.
+    /// Empty if it is not stored. Throws Error for a damaged file.
     std::optional<Value> find(const ValueSlot& slot) const;
     /// Values that are in use stay mapped.
     void remove(const ValueSlot& slot);

@@ -27,7 +27,7 @@ namespace scanmill {
 /// or not at all, without being synced to the disk. Throws Error.
 void write_checked(const std::filesystem::path& file, std::string_view kind, std::string_view content);
 
-/// Nothing if there is no such file. Throws Error if it has another kind, was written under another name, or its bytes
+/// Empty if the file does not exist. Throws Error if it has another kind, was written under another name, or its bytes
 /// changed.
 std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind);
 

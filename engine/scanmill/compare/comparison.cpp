@@ -84,7 +84,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 std::string shown(double value, Unit unit, LengthUnit lengths) { return display(Metric{"", value, unit}, lengths); }
 
-/// What the rule makes of a change. Pre: the values differ.
+/// The effect of a change under its rule. Pre: the values differ.
 Effect effect_of(const Tolerance& tolerance, double accepted, double found) {
     const double rise = found - accepted;
     double limit = tolerance.is_relative ? tolerance.amount * std::abs(accepted) : tolerance.amount;
@@ -111,7 +111,7 @@ std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_
     return costs;
 }
 
-/// What differs between two runs of a cell before its results: files, filters, parameters.
+/// Possible causes of differences between two runs of a cell: files, filters, parameters.
 std::vector<std::string> causes_of(const CellRecord& cell, const StepsByNode& steps, const CellRecord& before,
                                    const StepsByNode& steps_before) {
     using Occurrence = std::pair<std::string, std::size_t>;  // label and its number in the cell

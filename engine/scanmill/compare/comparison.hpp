@@ -133,7 +133,7 @@ constexpr auto fields(const CellComparison*) {
                       field("values", &R::values, "Numbers by source and name; null: not finite.")};
 }
 
-/// What the comparison needs to know of a run.
+/// The data of a run that the comparison needs.
 struct RunFacts {
     std::int64_t id = 0;
     std::string started, outcome, version, machine;

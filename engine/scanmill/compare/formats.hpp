@@ -18,7 +18,7 @@ nlohmann::ordered_json report_json(const Comparison& comparison);
 /// `strict` a doubtful one is a failure, else it passes and its doubts are in the suite's output.
 std::string junit_xml(const Comparison& comparison, bool strict);
 
-/// GitHub's Markdown, for a comment on a pull request. `metric`: of the matrix.
+/// GitHub's Markdown, for a comment on a pull request. `metric`: shown in the matrix.
 std::string markdown(const Comparison& comparison, const std::string& metric);
 
 /// RFC 4180 with a header: every metric, property and cost of every cell, a row each.

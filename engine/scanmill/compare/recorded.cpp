@@ -51,7 +51,7 @@ std::int64_t ended_run(const std::vector<RunSummary>& runs, const RecordedRun& w
     return *which.run;
 }
 
-/// What `run`, of `records` in `folder`, is compared with.
+/// The run that `run`, recorded in `records` of `folder`, is compared with.
 std::optional<Baseline> baseline_for(const RunDetails& run, const RunRecords& records, const fs::path& folder,
                                      const std::optional<RecordedRun>& against) {
     const std::string& batch = run.start.workflow;

@@ -24,7 +24,7 @@ bool is_filter_page(std::string_view text);
 
 /// The sentence about reading the scan in chunks. Pre: spec.streams.
 std::string stream_text(const FilterSpec& spec);
-/// What it measures by what, as a sentence.
+/// A sentence that names the measured input and its truth.
 std::string measures_text(const MeasureSpec& measures);
 
 }  // namespace scanmill

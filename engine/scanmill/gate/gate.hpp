@@ -2,7 +2,7 @@
 #pragma once
 /// The gate of a batch: by how much its metrics, costs and outputs may differ from the accepted run before it trips.
 ///
-/// A rule's text says what may happen: `+1 %` the value may rise by 1 % of the accepted one, and fall as it likes;
+/// A rule's text states what is allowed: `+1 %` the value may rise by 1 % of the accepted one, and fall as it likes;
 /// `-1 %` the reverse; `1 %` it may do neither by more; `+0.01 mm`, `-2`, `3 deg`: the same as absolute amounts, in the
 /// metric's unit; `exact` it must be equal. The costs `seconds`, `cpu-seconds` and `memory` take `+20 %`; `outputs` is
 /// `exact`: no output file may change a byte.

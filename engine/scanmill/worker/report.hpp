@@ -26,7 +26,7 @@ enum class Outcome {
 };
 constexpr std::array<std::string_view, 4> names_of(const Outcome*) { return {"ok", "doubtful", "failed", "skipped"}; }
 
-/// Where a node's result came from.
+/// Origin of a node's result.
 enum class Origin {
     ran,
     cached,      ///< found by the plan key, before the run

@@ -400,7 +400,7 @@ void Workbench::store_values(const Job& job, const JobCaching& caching, const Ou
         const EncodedValue encoded(value);
         bool is_kept = false;
         if (uses_cache(caching)) {
-            // What steps take by name alone, most workflows do not use.
+            // Most workflows do not use values that steps take by name alone.
             const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
             const bool is_used = !output || !output->by_name || is_needed;
             is_kept = cache_->value(encoded.content()).has_value();

@@ -201,7 +201,7 @@ void WorkerProcesses::cancel() {
         if (slot.job && slot.process) slot.process->signal(SIGTERM);
 }
 
-// How jobs end: with a report, by a limit, or with their process.
+// Ends of jobs: by a report, by a limit, or with their process.
 
 namespace {
 

@@ -33,7 +33,7 @@ ReadEntry text_into(std::string& target, Diagnostics& diagnostics);
 ReadEntry name_into(std::string& target, std::string what, Diagnostics& diagnostics);
 /// The unit of a scan; after an error `target` is unknown.
 ReadEntry unit_into(LengthUnit& target, Diagnostics& diagnostics);
-/// What happens to a scan's invalid rows; after an error `target` is by_format.
+/// The rule for a scan's invalid rows; after an error `target` is by_format.
 ReadEntry invalid_into(InvalidRows& target, Diagnostics& diagnostics);
 
 /// The key `scanmill: 1`, which every file has.

@@ -34,7 +34,7 @@ struct TimeUnit {
 // In the order in which they are tried as suffixes: `ms` before `s`.
 constexpr std::array<TimeUnit, 4> time_units{{{"ms", 1000, 1}, {"min", 1, 60}, {"h", 1, 3600}, {"s", 1, 1}}};
 
-/// The number before a unit, with or without blanks between; nothing for other texts.
+/// The number before a unit, with or without blanks between them; empty for other texts.
 std::optional<double> amount_before(std::string_view unit, std::string_view text) {
     if (!text.ends_with(unit)) return std::nullopt;
     text.remove_suffix(unit.size());
@@ -75,7 +75,7 @@ std::string duration_text(double seconds) {
 
 namespace {
 
-/// The text before the exponent; nothing unless it ends in an exponent that follows a unit.
+/// The text before the exponent; empty unless the text ends in an exponent that follows a unit.
 std::optional<std::string_view> without_exponent(std::string_view text, int power) {
     const auto exponents =
         power == 2 ? std::array<std::string_view, 3>{"^2", "²", "2"} : std::array<std::string_view, 3>{"^3", "³", "3"};

@@ -59,7 +59,7 @@ struct FileBytes {
     std::string_view bytes;
 };
 
-/// How sure a format is that a file is its own. Certain beats the extension, the extension beats plausible.
+/// Confidence of a format in that a file is its own. Certain beats the extension, the extension beats plausible.
 enum class Recognition { no, plausible, certain };
 
 /// The first bytes of a file that recognises() may read.
@@ -82,7 +82,7 @@ struct Format {
     std::vector<std::pair<Kind, Write>> writers;
     /// `read` always throws: the format is only written, or listed so that its refusal names an alternative.
     bool is_refused = false;
-    /// Why its module cannot be used, as a part of a sentence; `read` throws with it.
+    /// The reason why its module cannot be used, as a part of a sentence; `read` throws it.
     std::string unusable = {};
     /// Whether open_stream() may succeed; reads only the file's beginning and end. Both functions are empty for formats
     /// that cannot be streamed, and may throw Error for a file that `read` refuses as well.

@@ -164,7 +164,7 @@ private:
                 .hint("separate all numbers by the same character");
     }
 
-    /// Warns when the points are not as many as declared. Normals that follow the points are refused.
+    /// Warns when the number of points differs from the declared one. Normals that follow the points are refused.
     void check_count() const {
         const std::size_t found = positions_.size(), declared = layout_.declared_points.value_or(found);
         if (found == declared) return;

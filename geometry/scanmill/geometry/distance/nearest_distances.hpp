@@ -15,7 +15,7 @@ constexpr double position_rounding(double largest_coordinate) { return 0x1p-46 *
 struct NearestDistances {
     /// In the order of the points; 0 if not above `rounding`.
     Array<double> distances;
-    /// Rows of the nearest triangles; of equally near ones the smallest.
+    /// Rows of the nearest triangles; ties: the smallest.
     Array<u32> triangles;
     /// The same triangles as NearestTriangle::slot in the tree.
     Array<u32> slots;

@@ -40,7 +40,7 @@ public:
     /// Pre: at least two points. Cost: O(n log n) time, about 160 bytes per point.
     Neighbourhoods(const DistinctPoints& points, unsigned threads);
 
-    /// The nearest other points, ascending by distance, equally distant ones by position: 16, or all there are.
+    /// The 16 nearest other points (or all), ascending by distance, then by position.
     std::span<const u32> of(u32 point) const { return {nearest_.data() + std::size_t(point) * count_, count_}; }
     /// Squared distance within which of() holds all points.
     double squared_reach(u32 point) const { return squared_reach_[point]; }

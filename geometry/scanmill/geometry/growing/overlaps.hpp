@@ -32,7 +32,7 @@ bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, con
 /// The direction of the summed unit normals of the vertex's triangles, and of `more`; zero where the sum is.
 Vec3 fan_normal(const Surface& surface, u32 vertex, const Vec3& more);
 
-/// Whether sector_is_free() at every corner of the triangle that is a vertex of the surface. `normal`: of the triangle.
+/// Whether sector_is_free() at every corner of the triangle that is a vertex of the surface. `normal`: the triangle's.
 /// A corner's axis is its point's normal or, with `along_fans`, fan_normal() with the triangle's normal. Along the fans
 /// the test holds where the point's normal does not fit the surface, as at edges and tips, and takes longer.
 bool sectors_are_free(const Surface& surface, const Triangle& triangle, const Vec3& normal, bool along_fans);

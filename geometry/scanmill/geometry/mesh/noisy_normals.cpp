@@ -133,7 +133,7 @@ bool middle_reaches(const Matrix& m, double value) {
     return (first < 0) + ((first < 0) != (second < 0)) + ((second < 0) != (third < 0)) <= 1;
 }
 
-/// What the noise allows.
+/// Limits that follow from the noise.
 struct Limits {
     double variance;  ///< variance of a vertex position
     double reliable;  ///< least λ of a reliable normal

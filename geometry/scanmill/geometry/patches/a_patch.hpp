@@ -69,7 +69,7 @@ std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& 
 /// The zeros t in [0, 1] of any cubic, ascending, to about 1e-15. Of one that is 0 everywhere: 0.
 std::vector<double> zeros_of_cubic(const std::array<double, 4>& weights);
 
-/// Finds the tetrahedra of a complex that a question is about. Points outside all of them have no value: the function
+/// Evaluates a complex at points and along rays. Points outside all of them have no value: the function
 /// is defined near the surface only.
 class PatchSurface {
 public:
@@ -107,7 +107,7 @@ public:
 
     /// The point of the surface whose distance to `point` is least among its neighbours, by Newton's method along the
     /// surface from near `start`, always towards `point`; or along a crease, where that leads there. The nearest one of
-    /// all, if `start` is on the same slope. Nothing if `start` is outside the tetrahedra, or the way leads over the
+    /// all, if `start` is on the same slope. Empty if `start` is outside the tetrahedra, or the way leads over the
     /// boundary of an open surface.
     std::optional<Foot> foot(const Vec3& point, const Vec3& start) const;
     /// From `point` itself: the nearest one, if the point is nearer than the radius of curvature.

@@ -21,7 +21,7 @@ namespace scanmill {
 
 struct NearestTriangle {
     static constexpr u32 none = ~u32(0);
-    /// Row of the triangle; of equally near ones the smallest.
+    /// Row of the triangle; ties: the smallest.
     u32 triangle = none;
     /// Its index in the tree's own order; the `hint` for a search from a nearby point.
     u32 slot = none;
