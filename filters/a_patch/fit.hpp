@@ -50,8 +50,8 @@ struct FitResult {
 /// tenth of its value at each apex; where more weights of a tetrahedron than by default get a wrong sign, the changes
 /// of the edges around are reduced.
 ///
-/// `regularisation` is, by edge, the given one times a power of 10, below 200: that with which each half of the points
-/// predicts the distances of the other half best near the edge. Few or noisy points change the slopes less.
+/// Each edge chooses its `regularisation`: the given value times a power of 10, below 200, with which each half of the
+/// points best predicts the distances of the other half near the edge. Few or noisy points change the slopes less.
 ///
 /// Sets the slopes of `hull` and returns its weights. `weights` are those of the hull as it is. Slopes without points
 /// near them and without fairing keep their bits. Bytes do not depend on the number of threads.

@@ -13,8 +13,8 @@ namespace scanmill::a_patches {
 /// over the point's nearest triangle that vanishes at its corners, has these normals as gradients there, and is exact
 /// for quadrics; s is the mean diagonal element of the first sum's matrix. Points farther away than 3 times the median
 /// near their triangle count less (Huber), and those farther away than the radius of their triangle's inscribed circle
-/// not at all. The weight is, by normal, 1e-3 times a power of 10, below 200: that with which each half of the points
-/// predicts the other half best near the vertex. Three rounds. A change that a triangle opposes is halved until none
+/// not at all. Each normal chooses its weight: 1e-3 times a power of 10, below 200, with which each half of the points
+/// best predicts the other half near the vertex. Three rounds. A change that a triangle opposes is halved until none
 /// does. Without such points nothing changes; normals that are 0 stay 0.
 ///
 /// Bytes do not depend on the number of threads. Cost: about 2 us per point and 20 us per triangle.

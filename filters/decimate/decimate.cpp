@@ -29,8 +29,8 @@ constexpr double feature_reach = 4;
 constexpr double flat_angle_sine = 0.08715574274765817;
 /// Removal stays within this share of the largest error, so that the certificate needs few cuts to prove the whole.
 constexpr double steering_share = 1 - 0x1p-10;
-/// If the certificate exceeds the largest error nevertheless, everything is done again within this share of what would
-/// have sufficed, at most so often.
+/// If the certificate exceeds the largest error nevertheless, decimation is repeated with this share of the value that
+/// would have sufficed. `most_attempts` limits the repeats.
 constexpr double again_share = 0.98;
 constexpr int most_attempts = 4;
 /// Least error bound, as a share of the diagonal: the certificate cannot prove a smaller one.

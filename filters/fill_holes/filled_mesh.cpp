@@ -29,8 +29,8 @@ Column with_directions(const Column& column, std::span<const Vec3> added) {
     return {column.name(), column.components(), Buffer<Number>(std::move(values))};
 }
 
-/// The columns at `rows`; `name` has the directions `added` in its last rows. Rows that `marks` has count as filled, as
-/// those that the column `filled` has already.
+/// Gathers the columns at `rows`; the last rows of column `name` get the directions `added`. The column `filled` marks
+/// the rows in `marks`, and those that it marked before.
 ColumnTable extended(const ColumnTable& columns, const Array<u32>& rows, std::string_view name, u32 width,
                      std::span<const Vec3> added, std::span<const u8> marks, std::string_view element,
                      Context& context) {

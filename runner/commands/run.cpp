@@ -132,7 +132,7 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
 }
 
-/// Nothing with --no-cache, and, after a warning, without a folder for the cache.
+/// Opens the cache. Returns nullptr with --no-cache; also, with a warning, if the cache folder cannot be opened.
 std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn) {
     if (options.no_cache) return nullptr;
     try {

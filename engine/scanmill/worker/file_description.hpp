@@ -30,9 +30,9 @@ private:
 // The small JSON file beside every output, `<output>.json`: what the file is, how it was made, and what is known to be
 // true of it. Equal outputs have equal descriptions, whenever and wherever they were made.
 
-/// How an output comes about, as JSON: workflow and variants, scan, seed, the program's version, what the step that
-/// made it was expected to give, and of every step from the scan to it filter, version, build, key, parameters and
-/// metrics, and the doubts about them. `cells`: all that share the file.
+/// Describes as JSON how an output was made: workflow and variants, scan, seed, the program's version, expectations of
+/// the step that made it, and for each step from the scan to it: filter, version, build, key, parameters, metrics and
+/// doubts. `cells`: all that share the file.
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports);
 

@@ -64,7 +64,7 @@ std::size_t open_files() {
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
-/// Memory and files that a process has after a job beyond those of its start. As a part of a sentence; empty: little.
+/// Describes memory and open files that a process gained since its start, as a part of a sentence; empty if few.
 std::string leak(u64 memory_at_start, std::size_t files_at_start) {
     if (const std::size_t files = open_files(); files > files_at_start)
         return count_text(files - files_at_start, "more file is open", "more files are open");

@@ -30,8 +30,8 @@ struct DistinctPoints {
 /// Pre: finite positions, fewer than 2^32. Cost: O(n log n) at most, 61 bytes per point, 8 more per repeat.
 DistinctPoints distinct_points_of(std::span<const Vec3> positions);
 
-/// Throws Error unless there are three points that are not collinear, to within a billionth of their extent. `rows`: of
-/// the cloud, for the message.
+/// Throws Error if all points are collinear, to within a billionth of their extent. `rows`: rows of the cloud,
+/// for the message.
 void require_area(const DistinctPoints& points, std::size_t rows);
 
 /// The nearest neighbours of every point, found once, and a radius search for the few edges that look farther.

@@ -88,8 +88,8 @@ public:
     /// tetrahedron.
     explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
 
-    /// The tetrahedron that contains the point, of several the first row; of two partners the one whose function holds
-    /// at the point. Cost: O(log n).
+    /// The tetrahedron that contains the point: the first row if several do, and of two partners the one whose function
+    /// holds at the point. Cost: O(log n).
     std::optional<u32> locate(const Vec3& point) const;
     PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
 
