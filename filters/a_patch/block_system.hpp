@@ -32,7 +32,7 @@ public:
     Matrix& block(u32 row, u32 column);
     Vector& right(u32 row) { return right_[row]; }
 
-    /// By conjugate gradients, preconditioned by the diagonal blocks, from `x` on. Unknowns without a connection to a
+    /// Conjugate gradients, preconditioned by the diagonal blocks, starting at `x`. Unknowns without a connection to a
     /// right-hand side stay exactly 0 if they are. Cost: some hundred multiplications at most.
     void solve(std::vector<Vector>& x, const Execution& execution) const;
 

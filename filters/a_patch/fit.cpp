@@ -258,7 +258,7 @@ private:
         scale_ = trace > 0 ? trace / count : 1;
     }
 
-    /// By triangle. Points at a vertex, through which the surface goes in any case, do not count.
+    /// By triangle. Points at a vertex do not count: the surface passes through vertices anyway.
     std::vector<double> outlier_distances() const {
         std::vector<double> found(points_.size());
         std::vector<u32> triangles(points_.size());

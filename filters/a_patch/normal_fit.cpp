@@ -147,7 +147,7 @@ private:
         return {value, std::max(least_gradient, gradient.norm())};
     }
 
-    /// By triangle. Points at a vertex, through which the surface goes in any case, do not count.
+    /// By triangle. Points at a vertex do not count: the surface passes through vertices anyway.
     std::vector<double> outlier_distances() const {
         std::vector<double> found;
         std::vector<u32> triangles;

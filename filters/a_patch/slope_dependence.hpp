@@ -31,7 +31,7 @@ public:
     std::size_t count() const { return count_; }
     u32 edge(std::size_t n) const { return edges_[n]; }
 
-    /// By edge and component; the first count() are set.
+    /// Derivatives by edge and component; the first count() are set.
     std::array<Eigen::Vector2d, most_edges> derivatives(const Barycentric& at) const;
 
 private:

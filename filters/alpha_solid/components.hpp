@@ -17,7 +17,7 @@ enum Label : u8 {
     left_out = 2  ///< in the alpha-solid, but in a component of it that is not kept
 };
 
-/// Keeps, of the solid cells, those of the component (joined across facets) with the most points; of equal ones that
+/// Keeps the component of solid cells (joined across facets) that has the most points; ties: the one
 /// with the lowest point (by x, then y, then z; then the one whose highest point is lower). Labels the others
 /// `left_out`.
 void keep_largest_component(const TetMesh& tets, std::span<u8> labels);

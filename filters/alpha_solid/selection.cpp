@@ -20,7 +20,7 @@ AlphaChoice choice_of(AlphaSearch search) {
     return search == AlphaSearch::binary ? AlphaChoice::binary : AlphaChoice::scan;
 }
 
-/// From `alpha` to the nearest radius in the range; to its end where that lies below, though it is not in the range.
+/// Distance of `alpha` to the nearest radius in the range; its end counts if it is below, though not in the range.
 double distance(const AlphaRange& range, double alpha) {
     return std::max(std::sqrt(range.from) - alpha, alpha - std::sqrt(range.to));
 }

@@ -202,7 +202,7 @@ double median_distance(const DistinctPoints& points, const Neighbourhoods& neigh
     return std::sqrt(median(squares));
 }
 
-/// For hints: 2.5 spacings, where those of near-duplicates do not count. On a square grid the eighth nearest point is
+/// The max_edge for hints: 2.5 spacings, without those of near-duplicates. On a square grid the eighth nearest point is
 /// at the square root of 2.
 double suggested_max_edge(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double spacing) {
     return 2.5 * std::max(spacing, median_distance(points, neighbourhoods, 7) / std::numbers::sqrt2);

@@ -53,7 +53,7 @@ struct BallRegion {
     bool contains(const Vec3& position, u32&) const {
         return (origin + position - centre).squaredNorm() <= radius * radius;
     }
-    /// From the centre.
+    /// Squared distance from the centre.
     double squared_distance(const Vec3& position, double, u32&) const {
         return (origin + position - centre).squaredNorm();
     }

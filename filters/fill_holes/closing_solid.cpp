@@ -190,7 +190,7 @@ private:
             labels_[free[i]] = get(vertex_color, graph, i) == color_traits<default_color_type>::black();
     }
 
-    /// At vertices where the boundary is not one closed fan. Every change removes surplus parts, so this ends.
+    /// Mends vertices where the boundary is not one closed fan. Each change removes surplus parts, so this ends.
     void mend_vertices() {
         for (bool changes = true; changes;) {
             changes = false;
@@ -293,7 +293,7 @@ private:
         return result;
     }
 
-    /// The boundary. Where it still is not one closed fan at a vertex, every fan but the first gets a copy of it.
+    /// The boundary. A vertex that still has several fans gets a copy for every fan but the first.
     ClosingSolid boundary() {
         ClosingSolid result;
         std::vector<std::array<u32, 2>> facets;

@@ -41,7 +41,7 @@ FilledMesh filled_mesh(const TriangleMesh& mesh, Assembly all, std::span<const H
 /// triangles of the input are left out.
 std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, std::size_t first_new);
 
-/// With all columns of the input, and `filled`. Sharp edges and rows of edge columns stay while their edge exists.
+/// Adds all columns of the input, and `filled`. Sharp edges and rows of edge columns stay while their edge exists.
 TriangleMesh with_columns(const TriangleMesh& mesh, FilledMesh filled, Context& context);
 
 }  // namespace scanmill

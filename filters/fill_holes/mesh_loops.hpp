@@ -20,7 +20,7 @@ public:
     std::span<const u32> opposite() const { return opposite_; }
     /// Their half-edges along the boundary; each loop begins with its lowest one, loops ascend by it.
     const std::vector<std::vector<u32>>& loops() const { return loops_; }
-    /// On the boundary, ascending.
+    /// The half-edges on the boundary, ascending.
     std::span<const u32> half_edges() const { return outgoing_; }
     /// The half-edges of the loops along the boundary.
     u32 next(u32 h) const { return next_.at(h); }

@@ -77,7 +77,7 @@ struct Measurement {
     /// Mean cosine between the normal of a sample's triangle and that of the nearest one on the other surface, over
     /// both directions; -1 for a mesh inside out. Absent for a cloud, or if no pair has two normals.
     std::optional<double> normal_consistency;
-    /// The same of absolute values: does not depend on orientation.
+    /// The same with absolute values, so independent of orientation.
     std::optional<double> normal_consistency_unsigned;
     /// Samples whose nearest triangle is degenerate and has no normal; left out of the two numbers above.
     std::size_t without_normal = 0;

@@ -52,7 +52,7 @@ struct NormalsResult {
 
 /// One normal for each distinct position; duplicates share it.
 ///
-/// 1. Normal. By `method` from the position and its `neighbours` nearest other positions; of equally near ones the
+/// 1. Normal. By `method` from the position and its `neighbours` nearest other positions; ties: the
 ///    lower by x, then y, then z. A jet that is not determined is the plane.
 /// 2. Sensor. Every point has a direction to the scanner: its column `approach` (3 numbers, of any length above 0) or
 ///    that to `scanner`. A normal is turned to the side of the mean direction of the points at its position, unless
@@ -60,8 +60,8 @@ struct NormalsResult {
 ///    NaN).
 /// 3. Tree. Two positions are neighbours if one is among the `neighbours` nearest of the other. Starting from all
 ///    positions with a side, the next is always the one with the least 1 - |cosine| to the normal of a neighbour that
-///    has a side (of equal ones the lower position, and the lower neighbour), and takes its side. A component without
-///    any starts at its highest point (by z, of equal ones the lowest by x, then y), whose normal is turned upwards, or
+///    has a side (ties: the lower position, then the lower neighbour), and takes its side. A component without
+///    any starts at its highest point (by z; ties: the lowest by x, then y), whose normal is turned upwards, or
 ///    if it is horizontal away from the component's centroid.
 ///
 /// A point is doubtful if its neighbours lie on one line, so that they do not determine a plane (their flatness is

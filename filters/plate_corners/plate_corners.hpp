@@ -28,7 +28,7 @@ struct PlateCornersResult {
     PointCloud corners;
     /// Root of the mean squared distance of the points at the border from the sides between the corners.
     double residual = 0;
-    /// The same of the plate's points from its plane.
+    /// The same for the distances of the plate's points from its plane.
     double flatness = 0;
     /// Mean lengths of the found sides from the first to the second corner, and from the second to the third; also
     /// where `sides` are given.

@@ -199,7 +199,7 @@ Vec2 intersection(const Side& a, const Side& b) {
     return a.point + cross(b.point - a.point, b.direction) / cross(a.direction, b.direction) * a.direction;
 }
 
-/// By least squares about the centroid: the corners of the rectangle of these sides that are nearest to the given ones.
+/// Corners of the rectangle with these sides nearest to the given corners: least squares about the centroid.
 Corners of_size(const Corners& found, double first, double second) {
     const Corners ideal{Vec2(-first, -second) / 2, Vec2(first, -second) / 2, Vec2(first, second) / 2,
                         Vec2(-first, second) / 2};

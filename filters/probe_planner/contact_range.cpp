@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 /// Ranges that are empty by less are a single direction: covers rounding.
 constexpr double angle_rounding = 1e-12;
 
-/// In (-pi, pi].
+/// The angle of (x, y) in (-pi, pi].
 double arc_tangent(double y, double x) { return y < 0 ? -angle_of(x, -y) : angle_of(x, y); }
 
 /// NaN if low exceeds high.

@@ -25,7 +25,7 @@ using Vec2 = Eigen::Vector2d;
 
 using elementary::Turn;
 using elementary::turn_of;
-/// In [0, pi]. Pre: |cosine| <= 1.
+/// The angle in [0, pi]. Pre: |cosine| <= 1.
 double arc_cosine(double cosine);
 
 /// Radians. NaN where no direction is admissible.

@@ -74,7 +74,7 @@ Plane plane_of(const std::vector<Facet>& facets, Side side) {
     return plane;
 }
 
-/// By the sign along the direction in which the normals differ most.
+/// Divides facets by the sign along the direction in which the normals differ most.
 void divide(std::vector<Facet>& facets) {
     double weight = 0;
     Vec3 mean = Vec3::Zero();

@@ -23,7 +23,7 @@ struct ProbePlannerParams {
     /// delta: the largest distance of a reference point from the true edge, across the edge: what the scanner errs, and
     /// what thinning and triangulating add. 0 or more, below `radius`. No default.
     Length scanner_error;
-    /// Between touches along a line; above 0.
+    /// Distance between touches along a line; above 0.
     Length spacing = Length::percent_of_diagonal(1);
     /// phi of all touches, -90 to 90 degrees, whether or not it is safe; absent: the smallest safe one of each touch.
     std::optional<Angle> approach;

@@ -28,7 +28,7 @@ class OppositeSheets {
 public:
     OppositeSheets(const Surface& surface, const Components& components) : surface_(surface), components_(components) {}
 
-    /// With the search range as distance when there is none.
+    /// The nearest opposite sheet; without one, the distance is the search range.
     OppositeSheet nearest(u32 point) {
         const double voxel = surface_.search_radius[point] / radius_in_voxels;
         OppositeSheet best{thin_in_voxels * voxel, voxel};

@@ -20,7 +20,7 @@ public:
         std::ranges::fill(groups_, invalid_index);
     }
 
-    /// From the whole surface to the unused points.
+    /// Propagates from the whole surface to the unused points.
     void propagate_to(std::span<const u32> unused) {
         std::vector<u32> oriented;
         for (u32 point : unused)
@@ -31,7 +31,7 @@ public:
                 }
         propagate(oriented);
     }
-    /// From the triangles from row `first` on.
+    /// Propagates from the triangles from row `first` on.
     void propagate_from(std::size_t first) {
         std::vector<u32> oriented;
         for (std::size_t row = first; row < surface_.triangles.size(); ++row)

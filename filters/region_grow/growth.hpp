@@ -59,7 +59,7 @@ private:
 };
 
 /// Grows component after component until no unused point starts one: first from `start`, or by default from the point
-/// with the least surface variation (of equal ones the lowest number), then from the unused points in that order. False
+/// with the least surface variation (ties: the lowest number), then from the unused points in that order. False
 /// when nothing can start at `start`.
 ///
 /// Before each further component, unused points near the surface, and those near them, take over its orientation. A

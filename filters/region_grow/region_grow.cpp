@@ -62,7 +62,7 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         .hint("start at another point, on a flat and evenly sampled part, or leave start at `auto`");
 }
 
-/// For a cloud without any seed triangle. Names voxels that would make one sheet of several layers.
+/// Refuses a cloud without any seed triangle. Names voxels that would make one sheet of several layers.
 [[noreturn]] void refuse_all(const Surface& surface, const RegionGrowParams& params, LengthUnit unit,
                              unsigned threads) {
     const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())

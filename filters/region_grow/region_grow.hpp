@@ -44,7 +44,7 @@ struct RegionGrowParams {
     };
     /// Least angle of every triangle of the first pass; 0 or more, below 60 degrees.
     Angle min_angle = Angle::degrees(10);
-    /// Between the normals of a new triangle and each one that shares an edge; above 0, at most 180 degrees.
+    /// Largest angle between the normals of a new triangle and its neighbours; above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);
     /// The suitable point is no farther from an end of the edge, and the radius of the triangle's circumcircle is at
     /// most a third of this. Above 0; absent: 2 √3 B, where B is the point's value in the column `bin-size` or, without

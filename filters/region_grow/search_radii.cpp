@@ -63,7 +63,7 @@ public:
             if (given_sizes[other] > 0) buffer.push_back(given_sizes[other]);
         return buffer.empty() ? given_sizes[point] : std::min(given_sizes[point], largest_of_median * median(buffer));
     }
-    /// For voxels aligned with the axes.
+    /// Estimate for voxels aligned with the axes.
     double by_density_and_normals(u32 point, std::vector<double>& buffer) const {
         buffer.clear();
         for (u32 other : neighbourhoods_.of(point))

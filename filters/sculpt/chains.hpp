@@ -16,7 +16,7 @@ inline constexpr std::size_t longest_chain = 3;
 /// Two flips or more, each but the first at a facet that an earlier one uncovers.
 class Chain {
 public:
-    /// In the order of removal; empty if there is no chain.
+    /// The cells in the order of removal; empty if no chain exists.
     std::span<const u32> cells() const { return {cells_.data(), length_}; }
     /// The sum over all flips.
     double gain() const { return gain_; }

@@ -270,7 +270,7 @@ private:
         }
     }
 
-    /// At `share` of the way from the face of the first triangle to the crease, or from that of the second.
+    /// The point at `share` of the way from the face of the first triangle to the crease, or from that of the second.
     static Place on_way(const Place& crease, double share, bool is_first) {
         const double start = is_first ? 0 : 1;
         if (crease.zone == 1) return {1, start + share * (crease.at - start)};

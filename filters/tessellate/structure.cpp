@@ -78,7 +78,7 @@ std::vector<EdgeTets> edges_of(std::vector<TriangleTets>& triangles) {
     return edges;
 }
 
-/// At an end of the edge, of the two triangles' functions.
+/// Whether the two triangles' functions have different gradients at an end of the edge.
 bool gradients_differ(const PatchComplex& patches, const PatchStructure& structure, const EdgeTets& edge) {
     const auto gradient = [&](std::size_t of, u32 vertex) {
         const TriangleTets& t = structure.triangles[edge.triangles[of]];

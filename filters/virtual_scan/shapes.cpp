@@ -35,7 +35,7 @@ struct Passage {
     Vec3 normal;          ///< outwards, of the face through which the ray enters
 };
 
-/// By slabs (Kay, Kajiya 1986); of faces at the same depth, that of the lowest axis counts. A ray within a face passes
+/// By slabs (Kay, Kajiya 1986); among faces at the same depth the lowest axis counts. A ray within a face passes
 /// through.
 std::optional<Passage> passage_through(const Ray& ray, const BoundingBox& box) {
     double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
@@ -250,7 +250,7 @@ BoundingBox bounds_of(const Hyperboloid& surface) {
     return {{-r, -r, 0}, {r, r, std::numbers::sqrt2 * surface.height}};
 }
 
-/// From either side; the normal is turned against the ray.
+/// Hits from either side count; the normal is turned against the ray.
 std::optional<Hit> meet_hyperboloid(const Ray& ray, const Hyperboloid& surface) {
     const Vec3& d = ray.direction;
     const Vec3 o = ray.at(-ray.start.dot(d));  // the point nearest the origin: depths are small from there

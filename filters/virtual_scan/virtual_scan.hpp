@@ -43,7 +43,7 @@ struct VirtualScanParams {
     /// One whole number n: n directions spread evenly over the sphere (1 looks along the x axis). Else three numbers
     /// per view: the direction from the object to the sensor, of any length.
     std::vector<double> views = {12};
-    /// Between neighbouring rays; above 0.
+    /// Distance between neighbouring rays; above 0.
     Length resolution = Length::percent_of_diagonal(0.5);
     /// Standard deviation of the normally distributed error along the ray.
     Length noise;

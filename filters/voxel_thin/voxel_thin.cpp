@@ -217,7 +217,7 @@ void finish(VoxelThinResult& result, KeptRows rows, std::size_t points, Context&
     context.progress(1);
 }
 
-/// With a given voxel size. `gather` returns the points of ascending rows.
+/// Thins with a given voxel size. `gather` returns the points of ascending rows.
 VoxelThinResult thin_by_grid(const PointChunks& points, const RobustBox& box, const VoxelThinParams& params,
                              const std::function<PointCloud(std::span<const u32>)>& gather, Context& context) {
     const VoxelGrid grid = grid_over(box, grid_origin(box, params), params.bin_size->value());

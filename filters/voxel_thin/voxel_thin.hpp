@@ -97,15 +97,15 @@ struct VoxelThinResult {
     std::size_t noise = 0;
 };
 
-/// Keeps in every occupied voxel the point whose squared distance to the centre, in double, is smallest; of equal ones
-/// the lowest row. A duplicate counts as a point.
+/// Keeps in every occupied voxel the point whose squared distance to the centre, in double, is smallest; ties: the
+/// lowest row. A duplicate counts as a point.
 ///
 /// The tolerance holds where the scan shows the surface's curvature. Noise and edges between faces look more curved:
-/// `minimum` obeys them, `quantile` ignores a share of them. Kept points of adjacent voxels are at most 2 √3 voxel
+/// `minimum` follows them, `quantile` ignores a share of them. Kept points of adjacent voxels are at most 2 √3 voxel
 /// edges apart, and so are the corners of a triangle without kept points in its smallest circumsphere.
 ///
-/// Stray points (see robust_box.hpp) count neither for the grid's origin nor for a derived size. They are kept as
-/// others.
+/// Stray points (see robust_box.hpp) do not affect the grid's origin or a derived size, and are kept like other
+/// points.
 ///
 /// Throws Error for an empty cloud, a NaN or infinite coordinate, a bin size not above 0, a negative margin,
 /// min_points 0, more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), a grid

@@ -213,7 +213,7 @@ void print_settings(const Workflow& workflow, const FilterLibrary& library) {
         print_setting(parameter.name, values[parameter.name]);
 }
 
-/// For the scripts: the words are those after `scanmill` on the command line so far.
+/// Called by the scripts with the words after `scanmill` on the command line so far.
 int complete_set(const std::vector<std::string>& words) {
     const FilterLibrary library = open_library();
     if (!words.empty() && words.front() == "measure") {

@@ -89,7 +89,7 @@ Variants variants_of(const RunDetails& run) {
     return variants;
 }
 
-/// At most three names.
+/// Lists at most three names.
 std::string names_text(const std::vector<std::string>& names) {
     constexpr std::size_t most = 3;
     std::string text;

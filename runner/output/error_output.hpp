@@ -25,7 +25,7 @@ void print(const Diagnostics& diagnostics);
 
 /// `{"file", "ok", "diagnostics": [{"severity", "line", "column", "message"}]}`.
 nlohmann::ordered_json to_json(const Diagnostics& diagnostics);
-/// The same of a file that could not be read at all.
+/// The same for a file that could not be read at all.
 nlohmann::ordered_json unreadable_json(const std::string& file, const Error& error);
 
 /// `{"scanmill": 1, "files": […]}` on stdout, of objects as above.

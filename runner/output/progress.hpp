@@ -36,8 +36,8 @@ public:
     void step_ended() { ++ended_; }
     void cell_failed() { ++failed_; }
 
-    /// At most `width` columns and `height` lines: idle workers are left out first. `left`: estimated seconds until the
-    /// end; nothing: unknown.
+    /// The progress in at most `width` columns and `height` lines; idle workers are left out first. `left`: estimated
+    /// seconds until the end; empty: unknown.
     std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000,
                                    std::optional<double> left = {}) const;
 

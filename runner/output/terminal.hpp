@@ -20,7 +20,7 @@ std::string printable_line(std::string_view text);
 
 /// The columns that the text takes on a terminal. Wide characters of UTF-8 take two; an invalid byte takes one.
 std::size_t columns_of(const std::string& text);
-/// At most `width` columns of whole characters, "…" instead of what was cut off. The beginning is cut off, because
+/// Cuts to `width` columns of whole characters; "…" marks the cut. The beginning is cut off, because
 /// names differ at their end.
 std::string cut_begin(const std::string& text, std::size_t width);
 /// The same, cut in the middle.
@@ -50,7 +50,7 @@ public:
     /// The cells of this column are cut in the middle if the table is wider than the terminal. With several such
     /// columns, the first named is cut first.
     void may_cut(const std::string& header);
-    /// With a trailing newline; no blanks at line ends. `width`: the terminal's; empty: any.
+    /// The text with a trailing newline; no blanks at line ends. `width`: the terminal's; empty: any.
     std::string text(std::optional<std::size_t> width = {}) const;
 
 private:

@@ -17,7 +17,7 @@ public:
 
     /// Returns the task's number, counted from 0.
     std::size_t add(std::size_t kind, std::size_t group, double size);
-    /// Also of a task that has ended, or was not expected to run.
+    /// May be called for a task that has ended, or was not expected to run.
     void started(std::size_t task, double at);
     void progressed(std::size_t task, double fraction);
     /// `is_typical`: it did all of its work; others of its kind take as long.

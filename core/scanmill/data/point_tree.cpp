@@ -21,7 +21,7 @@ double squared_distance(const Vec3& a, const Vec3& b) {
     const double x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
     return (x * x + y * y) + z * z;
 }
-/// Between the nearest points of two boxes. Subtraction, squaring and addition are monotone when rounded to nearest, so
+/// Squared distance of two boxes. Subtraction, squaring and addition are monotone when rounded to nearest, so
 /// the computed distance to a box never exceeds the computed distance to a point in it.
 double squared_distance(const BoundingBox& a, const BoundingBox& b) {
     double gap[3];

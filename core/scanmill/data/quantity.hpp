@@ -20,7 +20,7 @@ namespace scanmill {
 /// The lengths of a scan that relative and absolute lengths are resolved with.
 struct LengthScale {
     LengthUnit unit = LengthUnit::unknown;
-    /// In the scan's unit; called only if a length needs them.
+    /// Return lengths in the scan's unit; called only if a length needs them.
     std::function<double()> diagonal, spacing;
 };
 
@@ -43,7 +43,7 @@ public:
     constexpr double amount() const { return amount_; }
     constexpr In in() const { return in_; }
 
-    /// In the scan's unit. Throws UnresolvedLength if the length is not resolved.
+    /// The value in the scan's unit. Throws UnresolvedLength if the length is not resolved.
     double value() const;
     /// The same length in the scan's unit. Throws UnresolvedLength for an absolute length on a scan of unknown unit and
     /// for a relative one if the reference is zero.

@@ -22,7 +22,7 @@ double ranked(Entries& entries, std::size_t rank, double sign) {
     return nth->coordinate;
 }
 
-/// The order of the pieces in which any part of them is soon visited: neighbours in a file are neighbours in space.
+/// An order that soon visits every part of the file: neighbours in a file are neighbours in space.
 Array<std::size_t> spread_order(std::size_t pieces) {
     Array<std::size_t> order;
     for (std::size_t step = std::bit_ceil(pieces); step > 0; step /= 2)

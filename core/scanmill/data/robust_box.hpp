@@ -24,7 +24,7 @@ struct StrayPoint {
 
 struct RobustBox {
     RobustBox() = default;
-    /// Without stray points.
+    /// A box without stray points.
     RobustBox(const BoundingBox& box) : all(box), robust(box) {}
 
     BoundingBox all;                ///< of all finite positions

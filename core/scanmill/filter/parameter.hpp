@@ -101,7 +101,7 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
 /// Throws Error when the value is out of the declared range.
 void require_in_range(const ParameterSpec& spec, const ParameterValue& value);
 
-/// As people write it: "0.1 %diag", "[0, 1]"; empty for nothing.
+/// The value as people write it: "0.1 %diag", "[0, 1]"; empty if it has none.
 std::string text(const ParameterValue& value);
 /// The same text for equal values, for cache keys: 40 deg and 0.698… rad have one text.
 std::string canonical_text(const ParameterValue& value);

@@ -67,7 +67,7 @@ Value reframed(const Value& value, const Frame& frame);
 Value in_unit(const Value& value, LengthUnit unit);
 
 std::vector<PropertySpec> property_specs(Kind kind);
-/// In the order of property_specs(), without undefined ones (the genus of a mesh that is not a manifold).
+/// In the order of property_specs(); undefined ones (genus of a non-manifold mesh) are left out.
 Metrics properties_of(const Value& value);
 
 /// The value with its world positions moved by the pose. Positions are only rotated and frame.origin is translated, so

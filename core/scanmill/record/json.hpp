@@ -66,7 +66,7 @@ namespace schema {
 inline Json type(const char* name) { return {{"type", name}}; }
 inline Json list_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}}; }
 inline Json map_of(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
-/// With a description: the text and, where there is one, the unit.
+/// Adds a description: the text and, if not empty, the unit.
 Json described(std::string_view text, std::string_view unit, Json schema);
 /// The same, or null.
 Json or_null(Json schema);

@@ -233,7 +233,7 @@ private:
     std::map<fs::path, int> line_of_;
 };
 
-/// Equal for equal values, whatever their positions.
+/// A key of the settings' values; positions do not count.
 std::string key_of(const Settings& settings) {
     KeyBuilder key;
     for (const auto& [name, value] : settings) {

@@ -122,7 +122,7 @@ struct CheckedBatch {
     /// Problems of the batch file, then of each readable workflow, checked with all values that it is run with.
     std::vector<Diagnostics> diagnostics;
 
-    /// With errors no part must be run.
+    /// If true, no part must be run.
     bool has_errors() const;
     /// Variants of all workflows; a variant in several parts of a workflow counts once.
     std::size_t variants() const;

@@ -97,7 +97,7 @@ private:
         return type;
     }
 
-    /// In a folder that may be listed but not entered, this is the same for all its entries.
+    /// Warns; once per folder if it cannot be entered, because all its entries then give the same error.
     void skip(const fs::path& path, const std::error_code& why) {
         if (why != std::errc::permission_denied)
             warn("'{}' cannot be read: {}; it is left out", path.string(), why.message());

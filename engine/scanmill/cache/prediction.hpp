@@ -19,7 +19,7 @@ struct NodePrediction {
     std::set<std::string> needed;  ///< output ports whose values are needed
 };
 
-/// For every node of the graph. A node runs if its result is not in the cache, or if a value of it that is needed (for
+/// Predicts each node. A node runs if its result is not in the cache, or if a value of it that is needed (for
 /// an output, an expectation or a step that runs) is not in the cache. `policy` of this run is part of the reason why a
 /// value is missing. `cache` may be null.
 std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache,

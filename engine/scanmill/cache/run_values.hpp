@@ -18,9 +18,9 @@ using ValueSlot = std::pair<std::size_t, std::string>;
 
 class RunValues {
 public:
-    /// In the memory of this process.
+    /// Keeps values in the memory of this process.
     RunValues() = default;
-    /// As files of the folder, which several processes may share. Readers map them.
+    /// Keeps values as files in the folder, which processes may share. Readers map them.
     explicit RunValues(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     bool are_in_memory() const { return folder_.empty(); }

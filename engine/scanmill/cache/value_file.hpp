@@ -82,7 +82,7 @@ Value read_value(const std::filesystem::path& file, std::string_view content = {
 /// Computes the name that EncodedValue gives to the point cloud in a file, without loading the cloud.
 class StreamedContent {
 public:
-    /// For every piece of positions that open_point_stream() reports: a scan near zero needs no second pass over them.
+    /// To be called with every chunk that open_point_stream() reports: a scan near zero needs no second pass over them.
     void add_world(std::span<const Vec3> positions) { positions_.add(std::as_bytes(positions)); }
     /// Pre: add_world() got all positions of this stream; called once. Cost: one pass over the file if the cloud has
     /// columns or is far from zero; up to four pieces per thread are in memory. `on_piece` is called for every piece,

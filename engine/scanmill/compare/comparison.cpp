@@ -291,7 +291,7 @@ private:
         return std::isnan(share) ? infinite : share;
     }
 
-    /// In the unit of the new value.
+    /// The change, in the unit of the new value.
     static MetricChange change_of(const CellValue* was, const CellValue* is) {
         const CellValue& either = is ? *is : *was;
         MetricChange change;
@@ -450,7 +450,7 @@ Verdict verdict_of(const Comparison& comparison) {
     return comparison.count(Verdict::improved) > 0 ? Verdict::improved : Verdict::passed;
 }
 
-/// The pools by cell; scans by their names from the batch's folder.
+/// Pools of past costs by cell. Scans are named by their paths from the batch's folder.
 class Pools {
 public:
     Pools(const std::vector<PastCosts>& all, const std::string& file) {

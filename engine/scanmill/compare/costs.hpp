@@ -29,7 +29,7 @@ inline constexpr std::size_t most_ranked = 20;
 /// N n² N additions.
 ExactProbability rank_test(std::span<const double> larger, std::span<const double> smaller);
 
-/// The mean of the two middle values of an even number. Pre: not empty.
+/// For an even number of values, the mean of the two in the middle. Pre: not empty.
 double median(std::span<const double> values);
 
 /// Fewer earlier passes than this say too little for ranks: only the sizes decide, at twice the tolerance.

@@ -21,7 +21,7 @@ bool has_several_workflows(const Comparison& comparison) {
     });
 }
 
-/// With the workflow's name if there are several.
+/// The variant's name, after the workflow's name if there are several.
 std::string variant_text(const CellComparison& cell, bool with_workflow) {
     return with_workflow ? cell.workflow + ": " + cell.variant : cell.variant;
 }

@@ -20,7 +20,7 @@ struct ReportTable {
 std::string counts_text(const Comparison& comparison);
 /// "run 14 of 2026-11-23T02:00:11Z against run 9 of …, accepted by Ann: a new scanner"
 std::string runs_text(const Comparison& comparison);
-/// Name and text: `version`, `machine`, `gate`, `filters`, `note`; only those that there are.
+/// Name and text: `version`, `machine`, `gate`, `filters`, `note`; only existing ones.
 std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comparison);
 
 /// What changed, in the order of what_changed(). Changes that do not trip are left out where `most` rows do not

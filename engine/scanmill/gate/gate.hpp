@@ -49,7 +49,7 @@ struct Tolerance {
 /// number: `-0.01` is one percentage point. Amounts are finite and not negative; `spacing` is refused.
 Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal);
 
-/// For the check of a batch, before any value is known. Throws Error as parse_tolerance() does, and for a rule that
+/// Checks a rule of a batch before any value is known. Throws Error as parse_tolerance() does, and for a rule that
 /// limits improvements: without a sign, or with the wrong one, although one direction is the better one.
 void require_rule_fits(std::string_view text, Unit unit, Better better);
 

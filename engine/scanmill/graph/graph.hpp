@@ -160,8 +160,8 @@ RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library,
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);
 
-// Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Whether its file
-// allows it is certain only when it is opened; else it is loaded, with the same results.
+// Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Only opening
+// the file shows whether its format allows it; otherwise the scan is loaded, with the same results.
 
 /// Whether the step can read its scan as a stream: its filter can, the scan is the only one of its `inputs` wired
 /// values, the parameters that this requires have values, and no parameter is in spacings, which need all points at

@@ -280,7 +280,7 @@ private:
         return leaves;
     }
 
-    /// For an input beside the scans. Pre: require_fits().
+    /// The files of an input other than the scans. Pre: require_fits().
     std::vector<ScanFile> files_of(const std::string& input, const ScanFile* file) const {
         if (const auto common = request_->inputs.find(input); common != request_->inputs.end())
             return {common->second.begin(), common->second.end()};

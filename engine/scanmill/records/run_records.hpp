@@ -79,7 +79,7 @@ public:
     static constexpr int most_past_runs = 20;
     std::vector<PastCosts> past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const;
 
-    /// In the order of their numbers.
+    /// All runs in the order of their numbers.
     std::vector<RunSummary> runs() const;
     /// Throws Error for an unknown run, naming the existing ones.
     RunSummary summary(std::int64_t id) const;

@@ -215,7 +215,7 @@ private:
         return std::nullopt;
     }
 
-    /// Equal for tasks of different nodes that give the same result: the second waits and takes it from the cache.
+    /// Tasks with equal keys give equal results: the second one waits and takes the result from the cache.
     std::string computation_key(const Task& task) const {
         const RunNode& node = graph_.nodes[task.node];
         if (task.write > 0 || !node.step || !prediction_[task.node].will_run || !settings_.cache || node.is_uncacheable)

@@ -3,7 +3,7 @@
 /// At most one run writes into an output folder at a time.
 ///
 /// A run locks the file `scanmill.lock` in the folder (an open file description lock), which the system releases when
-/// the process ends, however it ends. The file contains who holds the lock, for messages; at the end it is removed.
+/// the process ends, however it ends. The file names the lock's holder, for messages, and is removed at the end.
 
 #include <filesystem>
 #include <functional>

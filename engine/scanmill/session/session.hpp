@@ -58,12 +58,12 @@ public:
     /// Which nodes will run and why; what changed since the last run into the same folder is taken from its records.
     std::vector<NodePrediction> predict(const RunGraph& graph, FilterLibrary& library) const;
 
-    /// As set; else as many as there are cells and cores, and as memory allows when each job takes the largest scan.
+    /// The set number; else limited by cells, cores and memory, as if each job took the largest scan.
     unsigned jobs(const RunGraph& graph) const;
 
     /// Runs the graph, records the run, and evicts from the cache what exceeds its limit. Throws Error when results
     /// cannot be written to the output folder, and FolderInUse when another run writes into it. Without a cache, the
-    /// complete cells run again, until their costs are measured as often as the task says; these passes write no
+    /// complete cells run again, until the task's number of measurements is reached; these passes write no
     /// outputs. `on_start` is called once, before the first step. `jobs`: from jobs(),
     /// which depends on the free memory.
     RunReport run(const SessionTask& task, unsigned jobs, FilterLibrary& library,

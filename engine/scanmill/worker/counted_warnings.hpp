@@ -22,7 +22,7 @@ public:
         warnings_.push_back({sentence, 1});
         return true;
     }
-    /// In the order of their first appearance: "… (3 times)".
+    /// Warnings in the order of their first appearance: "… (3 times)".
     std::vector<std::string> sentences() const {
         std::vector<std::string> sentences;
         for (const auto& [sentence, count] : warnings_)

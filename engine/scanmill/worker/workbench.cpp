@@ -223,7 +223,7 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
 
 namespace {
 
-/// For files that are read again; their warnings were reported the first time.
+/// Used when files are read again: their warnings were already reported.
 void ignore_warning(std::string) {}
 
 void add_stray_points(const RobustBox& box, Metrics& properties) {

@@ -52,7 +52,7 @@ private:
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void write(const WriteWork& work, JobReport& report);
 
-    /// From the RunValues, the cache, or its file. Throws InputLost, and adds it to the report, if it is nowhere.
+    /// Takes the value from the RunValues, the cache or its file. If none has it, reports and throws InputLost.
     Value fetch(const JobInput& input, JobReport& report) const;
     /// The step's scan, if it can be streamed. The cache is not asked for its value: whether a scan fits into memory
     /// must not depend on earlier runs.

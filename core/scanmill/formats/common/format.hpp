@@ -105,7 +105,7 @@ std::string extension_of(const std::filesystem::path& path);
 /// The file's name without that extension, and without a `.gz` after it: "scan".
 std::string stem_of(const std::filesystem::path& path);
 
-/// Every format, in the order in which they are tried and listed: the built-in ones, then those of modules.
+/// Every format, in the order of trials and lists: the built-in ones, then those of modules.
 std::span<const Format> formats();
 
 /// The formats of loadable modules. Defined in plugin/format_modules.cpp, which loads them.

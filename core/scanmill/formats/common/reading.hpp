@@ -35,10 +35,10 @@ auto with_file_name(const std::filesystem::path& path, Action&& action) {
 std::function<void(std::string)> warnings_with_file_name(const std::filesystem::path& path,
                                                          const std::function<void(std::string)>& on_warning);
 
-/// Without the three bytes with which text editors of Windows begin a file.
+/// Removes the byte-order mark that text editors of Windows write.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// Without blanks, tabs and carriage returns at both ends.
+/// Removes blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
 /// The text after `keyword` and a blank in a comment, without blanks around it; empty when the comment does not begin

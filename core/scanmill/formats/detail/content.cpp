@@ -39,7 +39,7 @@ public:
         while (filled < room.size() && !is_at_end_) filled += step(room.subspan(filled));
         return filled;
     }
-    /// After the end: what follows the last member.
+    /// After the end: the bytes that follow the last member.
     std::string_view rest() const { return input_; }
 
 private:

@@ -77,7 +77,7 @@ void begin_lists(std::span<const PlySlot> slots, u64 rows, std::size_t most_byte
     }
 }
 
-/// Memory for a list's values, of `bytes` in all; the list is the next row's.
+/// Appends the next row's list; returns the memory for its values, `bytes` in all.
 std::byte* append_list(PlyLists& lists, u64 length, std::size_t bytes) {
     lists.offsets.push_back(lists.offsets.back() + length);
     lists.values.resize(lists.values.size() + bytes);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr u32 no_point = ~u32(0);
 
-/// By cell; nothing if a list is not as described.
+/// Point of each cell; empty if a list is not as described.
 std::optional<std::vector<u32>> points_of(const Column& cells, std::size_t points) {
     std::vector<u32> rows(cells.rows(), no_point);
     bool is_valid = cells.type() < ScalarType::float32;

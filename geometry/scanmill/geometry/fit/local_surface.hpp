@@ -48,7 +48,7 @@ struct LocalSurface {
 /// Source: Wang 2006, section 3.5; the inclination is an addition.
 LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin);
 
-/// For every position of the tree; uses all other positions if there are fewer than params.neighbours.
+/// Fits a surface at every position of the tree; uses all other positions if there are fewer than params.neighbours.
 /// The result depends on the positions alone, not on threads. Cost: for 25 neighbours about twice that of finding
 /// them. Checks for cancellation.
 Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfaceParams& params, const Execution& execution);

@@ -32,7 +32,7 @@ struct PrincipalCurvatures {
     double first = 0, second = 0;
 };
 
-/// At the origin, where the plane of u and v need not be tangent. If d = e = 0: (a + c) ± sqrt((a - c)² + b²).
+/// At the origin; there the plane of u and v need not be tangent. If d = e = 0: (a + c) ± sqrt((a - c)² + b²).
 PrincipalCurvatures principal_curvatures(const Quadric& quadric);
 
 }  // namespace scanmill

@@ -32,7 +32,7 @@ struct LoopShape {
 LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::span<const Vec3> normals);
 
 /// Whether each loop is an outer boundary of its connected component; the others are holes. The sign of a clear area
-/// decides. A loop without a clear area is outer if it is the longest of its component's loops; of equally long ones
+/// decides. A loop without a clear area is outer if it is the longest of its component's loops; among equally long ones
 /// (to a billionth) the first.
 ///
 /// Pre: the shapes of all loops of the mesh. Cost: linear in the triangles if a shape is not clear, else in the loops.

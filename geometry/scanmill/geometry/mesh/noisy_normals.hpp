@@ -53,7 +53,7 @@ struct NoisyNormals {
 /// by facet_normals(). `noise`: the standard deviation σ of the vertices.
 ///
 /// A normal is *reliable* if noise on a plane makes no angle above `angle`: z √2 σ / √λ <= angle, with
-/// z = √(2 ln #edges), which of as many normally distributed numbers none exceeds. Reliable normals stay as they are.
+/// z = √(2 ln #edges), which none of #edges normally distributed numbers exceeds. Reliable normals stay as they are.
 /// Others become the normal of a neighbourhood that contains the triangle, or stay, whichever has the least mean square
 /// error: σ² / λ by noise, plus (λ₃ - (n - 3) σ²) / λ, but at least 0, by curving, for the n vertices of the
 /// neighbourhood and their least eigenvalue λ₃. At a crease that is a neighbourhood on one side of it, so creases stay

@@ -110,7 +110,7 @@ public:
     /// all, if `start` is on the same slope. Empty if `start` is outside the tetrahedra, or the way leads over the
     /// boundary of an open surface.
     std::optional<Foot> foot(const Vec3& point, const Vec3& start) const;
-    /// From `point` itself: the nearest one, if the point is nearer than the radius of curvature.
+    /// Starts at `point` itself: finds the nearest foot if `point` is nearer than the radius of curvature.
     std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
 
 private:
@@ -128,7 +128,7 @@ private:
     bool retract(Vec3& point, Local& here) const;
     /// The tetrahedra with two functions that contain the point; of partners the lower row.
     std::vector<u32> with_creases_at(const Vec3& point) const;
-    /// From x to the crease, and along its tangent to the point nearest to `point`.
+    /// The step from x to the crease, and along its tangent to the point nearest to `point`.
     Vec3 step_on_crease(const Vec3& point, const Vec3& x, u32 tet) const;
     /// The same as foot() along the creases, from one in a tetrahedron.
     std::optional<Foot> foot_on_crease(const Vec3& point, const Vec3& start, u32 tet) const;

@@ -53,7 +53,7 @@ double overhang(const PlaneDistances& distances) {
     return std::min(std::ranges::max(distances), -std::ranges::min(distances));
 }
 
-/// To that plane through an edge of the triangle below the part which the part crosses farthest.
+/// Distances to the plane, through an edge of the triangle below, that the part crosses farthest.
 PlaneDistances farthest_crossed(const TrianglePart& part) {
     const std::array<Vec3, 3> below = part.other->corners(part.below);
     const Vec3 normal = (below[1] - below[0]).cross(below[2] - below[0]);
