@@ -30,8 +30,8 @@ SCANMILL_FILTER() {
                   "given if the mesh has the column, else points if there are any, else mesh; with points and `fit` "
                   "turned so that the surface passes near the points."},
                  {"given", P::Normals::given, "The mesh's face column `corner-normals`."},
-                 {"points", P::Normals::points, "Of quadrics fitted to the points near each vertex."},
-                 {"mesh", P::Normals::mesh, "Of the triangles around each vertex."}},
+                 {"points", P::Normals::points, "Normals of quadrics fitted to the points near each vertex."},
+                 {"mesh", P::Normals::mesh, "Mean normal of the triangles around each vertex."}},
                 "Where the normals at the vertices come from; they decide most of the surface's error.")
         .choice("split", &P::split,
                 {{"always", Split::always, "Three tetrahedra per side of every triangle: the smaller error."},
@@ -82,7 +82,7 @@ SCANMILL_FILTER() {
         .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
                 smaller_is_better)
         .metric("crease-max", Unit::length,
-                "Largest distance of a crease from the mesh's sharp edge; creases of round rims bulge.")
+                "Largest distance of a crease from the mesh's sharp edge; creases of round edges bulge.")
         .metric("regularisation", Unit::number, "Median penalty used.")
         .metric(
             "fairness-before", Unit::number,

@@ -53,7 +53,7 @@ Value apply_transform(const Value& value, const RigidTransform& transform, Conte
     Value moved = placed(value, transform);
     if (transform.to.empty() && !frame->name.empty()) {
         context.warn(
-            fmt::format("the transform does not name the frame that it leads to; the value is no longer in "
+            fmt::format("the transform does not name its target frame; the value is no longer in "
                         "'{}' and has no frame's name",
                         frame->name));
         Frame unnamed = *frame_of(moved);

@@ -10,7 +10,7 @@ SCANMILL_FILTER() {
         .summary("Inserts thinned points slice by slice into clusters and continues their mesh with each point.")
         .source("Sangveraphunsiri, Srirakulchai 2006, made robust")
         .ties(
-            "Of equally near points and edges the first along a space-filling curve through the box; of duplicates the "
+            "Equally near points and edges: the first along a space-filling curve through the box; duplicates: the "
             "first row.")
         .not_finite("Refused, with their number and the first of them.")
         .adds({"cluster-1", "cluster-2"})
@@ -64,7 +64,7 @@ SCANMILL_FILTER() {
         .metric("case-3", Unit::count, "Points near one point of a larger cluster.")
         .metric("case-4", Unit::count, "Points near several points of a cluster.")
         .metric("splits", Unit::count, "Points that split a triangle.")
-        .metric("extra", Unit::count, "Points that waited because the surface bends too much at the nearest edge.")
+        .metric("extra", Unit::count, "Points that waited because the nearest edge is too sharp.")
         .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
         .metric("removed-triangles", Unit::count,
                 "Triangles removed again, where a vertex had several fans or to close a hole.")

@@ -28,8 +28,8 @@ SCANMILL_FILTER() {
                            "edges.")
         .param("max-error", &P::max_error, "Largest distance between the input and the result, in both directions.",
                at_least(0))
-        .param("outside", &P::outside, "In place of max-error where the input is outside the result.", at_least(0))
-        .param("inside", &P::inside, "In place of max-error where the input is inside the result.", at_least(0))
+        .param("outside", &P::outside, "Replaces max-error where the input is outside the result.", at_least(0))
+        .param("inside", &P::inside, "Replaces max-error where the input is inside the result.", at_least(0))
         .choice("mode", &P::mode,
                 {{"direct", DecimateMode::direct,
                   "Errors are measured to the input mesh, and to the points if there are any."},

@@ -26,25 +26,25 @@ SCANMILL_FILTER() {
         .param("max-length", &P::max_length, "Loops that are longer stay open; `none`: any length.", above(0),
                word("none"))
         .param("fair", &P::fair,
-               "Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay "
+               "Moves the new vertices so that they continue the surface without a crease. Otherwise they stay "
                "in the triangles that span the loop.")
         .param("together", &P::together,
-               "If loops stay open because every filling would intersect something, closes the surface as a whole, as "
+               "If loops stay open because any triangulation would intersect something, closes the whole surface, as "
                "the boundary of a solid, which replaces some of its triangles. Not if a limit leaves loops open.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
-        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without a valid filling.", headline)
+        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without valid triangles.", headline)
         .metric("added-triangles", Unit::count, "New triangles.")
         .metric("added-points", Unit::count, "New vertices.")
-        .metric("area", Unit::area, "Area of the fillings.")
+        .metric("area", Unit::area, "Area of the new triangles.")
         .metric("share", Unit::ratio, "The same as a share of the whole area, fillings included.", smaller_is_better)
         .metric("longest", Unit::length, "Length of the longest filled loop.", smaller_is_better)
         .metric("plain", Unit::count,
-                "Filled loops whose faired filling would intersect something and that have a plainer one.")
+                "Filled loops whose faired triangulation would intersect something, so a plainer one was used.")
         .metric("together", Unit::count,
-                "Filled loops that have no filling of their own: the surface was closed as a whole.", smaller_is_better)
+                "Filled loops without a triangulation of their own: the whole surface was closed.", smaller_is_better)
         .metric("replaced-triangles", Unit::count, "Triangles of the input that this replaced.", smaller_is_better)
         .metric("failed", Unit::count,
-                "Loops within the limits that stay open because every filling would intersect "
+                "Loops within the limits that stay open because any triangulation would intersect "
                 "something.",
                 smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {

@@ -72,14 +72,14 @@ std::vector<double> uncertainties(Inputs inputs) {
                 "compares",
                 input, inputs.size())
                 .hint(
-                    "`default-uncertainty` stands for a missing column; `prefer: none` keeps the points of the earlier "
+                    "`default-uncertainty` replaces a missing column; `prefer: none` keeps the points of the earlier "
                     "input");
         for (std::size_t row = 0; row < column->rows(); ++row) {
             values.push_back(column->number(row));
             if (!(values.back() >= 0))
                 throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, input, values.back())
                     .hint(std::isnan(values.back())
-                              ? "`default-uncertainty` stands for NaN; `prefer: none` does not read the column"
+                              ? "`default-uncertainty` replaces NaN; `prefer: none` does not read the column"
                               : "`prefer: none` does not read the column");
         }
     }

@@ -18,7 +18,7 @@ SCANMILL_FILTER() {
     return Declare<P>("merge", 2)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
-        .ties("Of points that overlap and have equal preference the one of the earlier input is kept.")
+        .ties("If points overlap and have equal preference, the one of the earlier input is kept.")
         .not_finite("Refused, with the input, their number and the first of them.")
         .adds({"source", "uncertainty"})
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)

@@ -10,7 +10,7 @@ SCANMILL_FILTER() {
         .summary("Estimates the normal at every point, and turns it to the outside.")
         .source("Hoppe, DeRose, Duchamp, McDonald, Stuetzle 1992; Cazals, Pouget 2005 for `jet`")
         .ties(
-            "Of equally near points the lower in order of x, then y, then z is nearer; of equal links of the tree the "
+            "Equally near points: the lower in order of x, then y, then z is nearer; equal links of the tree: the "
             "one to the lower point comes first.")
         .not_finite("Refused; the message gives their number and the first one.")
         .adds({"normal"})

@@ -15,7 +15,7 @@ SCANMILL_FILTER() {
         .summary("Signed distance of points to the surface of A-patches.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
-            "Of equally near parts of the surface, the one whose triangle in the tessellation is nearer, or has the "
+            "Equally near parts of the surface: the one whose triangle in the tessellation is nearer, or has the "
             "lower row.")
         .not_finite("Refused, with their number and the first of them.")
         .adds({"distance-to-patches"})

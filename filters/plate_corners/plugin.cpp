@@ -9,7 +9,7 @@ SCANMILL_FILTER() {
     return Declare<P>("plate-corners", 2)
         .summary("Finds the four corners of a rectangular plate in a scan.")
         .source("Wang 2006, chapter 5; Fischler and Bolles 1981")
-        .ties("Of equally good planes and lines the first in the order of the random samples.")
+        .ties("Equally good planes and lines: the first in the order of the random samples.")
         .not_finite("Refused, with their number and the first of them.")
         .adds({"normal"})
         .in<PointCloud>("points", "A scan of the plate; a part may stand on it.")

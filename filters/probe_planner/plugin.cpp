@@ -58,11 +58,11 @@ SCANMILL_FILTER() {
         .metric("assumed", Unit::count, "Touches beyond whose edge there is no surface: a right angle is assumed.")
         .metric("unreachable", Unit::count, "Touches that cannot be made.", headline, smaller_is_better)
         .metric("too-narrow", Unit::count,
-                "Of these, those without a safe direction, or in a hole too small for the ball.", smaller_is_better)
-        .metric("concave", Unit::count, "Of these, those at edges that no ball meets.")
-        .metric("obstructed", Unit::count, "Of these, those where ball or stylus would meet the part elsewhere.",
+                "Unreachable touches without a safe direction, or in a hole too small for the ball.", smaller_is_better)
+        .metric("concave", Unit::count, "Unreachable touches at edges that no ball meets.")
+        .metric("obstructed", Unit::count, "Unreachable touches where ball or stylus would meet the part elsewhere.",
                 smaller_is_better)
-        .metric("too-tilted", Unit::count, "Of these, those farther from the machine's axis than max-tilt.",
+        .metric("too-tilted", Unit::count, "Unreachable touches farther from the machine's axis than max-tilt.",
                 smaller_is_better)
         .metric("false-touches", Unit::count,
                 "Tried positions of reference points, 1,000 for each touch, for which a face is met before the edge; 0 "

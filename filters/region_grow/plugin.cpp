@@ -10,7 +10,7 @@ SCANMILL_FILTER() {
         .summary("Grows a surface over thinned points from a seed triangle; finds boundaries, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties(
-            "Of equally good points the first along a space-filling curve through the box; of duplicates the first "
+            "Equally good points: the first along a space-filling curve through the box; duplicates: the first "
             "row, "
             "with the smallest bin-size and the first normal by x, y, z.")
         .not_finite("Refused, with their number and the first of them; normals are replaced instead.")

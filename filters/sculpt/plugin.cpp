@@ -27,11 +27,11 @@ SCANMILL_FILTER() {
         .param("lookahead", &P::lookahead,
                "Whether the gain of an exposing step includes the best smoothing step after it.")
         .metric("removed", Unit::count, "Cells removed.")
-        .metric("removed-exposing", Unit::count, "Of these, cells whose removal brought a point to the boundary.")
+        .metric("removed-exposing", Unit::count, "Removed cells that brought a point to the boundary.")
         .metric("removed-smoothing", Unit::count,
-                "Of these, cells whose removal flipped an edge to decrease the bending, alone or in a chain.")
+                "Removed cells that flipped an edge to decrease the bending, alone or in a chain.")
         .metric("removed-opening", Unit::count,
-                "Of these, cells whose removal flipped an edge to reach a deeper point.")
+                "Removed cells that flipped an edge of the boundary to reach a deeper point.")
         .metric("removed-share", Unit::ratio, "Removed cells divided by the cells inside before.")
         .metric("volume-removed", Unit::volume, "Volume of the removed cells.")
         .metric("bending-before", Unit::angle, "Sum over the boundary's edges of the angle between normals, before.")
@@ -39,9 +39,9 @@ SCANMILL_FILTER() {
         .metric("interior-points", Unit::count, "Points left inside the solid.", headline, smaller_is_better)
         .metric(
             "interior-blocked", Unit::count,
-            "Of these, points that no removal can reach without the boundary touching itself or a point left outside.",
+            "Such points that no removal can reach: the boundary would touch itself, or a point would be left outside.",
             smaller_is_better)
-        .metric("interior-deep", Unit::count, "Of these, points more than two cells below the boundary.",
+        .metric("interior-deep", Unit::count, "Such points that lie more than two cells below the boundary.",
                 smaller_is_better)
         .metric("outside-points", Unit::count, "Points in no cell of the solid, as in the input.", smaller_is_better)
         .metric("triangles", Unit::count, "Triangles of the boundary.")

@@ -208,7 +208,7 @@ void add_check(CLI::App& app, Action& chosen) {
     command.add_option("FILE", options.files, "Workflow or batch files")->required();
     command.add_option("--set", options.settings, "A workflow parameter's value, NAME=VALUE")->take_all();
     CLI::Option* plan = command.add_flag("--plan", options.plan, "Print the steps of every variant and their inputs");
-    CLI::Option* format = command.add_option("--format", options.format, "Of the plan: text or dot (for Graphviz)")
+    CLI::Option* format = command.add_option("--format", options.format, "Plan format: text or dot (for Graphviz)")
                               ->needs(plan)
                               ->check(CLI::IsMember({"text", "dot"}));
     command.add_flag("--json", options.json, "Print the result as JSON")->excludes(format);

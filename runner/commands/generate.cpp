@@ -99,7 +99,7 @@ int docs(const DocsOptions& options) {
 void add_schema_and_docs(CLI::App& app, Action& chosen) {
     auto [schema_command, schema_options] =
         add_command<SchemaOptions>(app, chosen, "schema",
-                                   "Prints a JSON Schema: of workflow or batch files, for editors, of what a command "
+                                   "Prints the JSON Schema of workflow or batch files (for editors), of what a command "
                                    "prints with --json, or of the "
                                    "JSON documents that steps write",
                                    schema);
@@ -109,7 +109,7 @@ void add_schema_and_docs(CLI::App& app, Action& chosen) {
     CLI::Option* kind =
         schema_command
             .add_option("KIND", schema_options.kind,
-                        "Which to print: workflow (the default), batch, of the output of a command, or of a "
+                        "The schema to print: workflow (the default), batch, that of a command's output or of a "
                         "document")
             ->check(CLI::IsMember(kinds));
     schema_command

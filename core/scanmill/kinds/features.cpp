@@ -36,8 +36,8 @@ constexpr auto fields(const PolylineDocument*) {
     return std::tuple{field("type", &T::type),
                       field("closed", &T::closed, "Its last segment returns to its first point."),
                       field("points", &T::points, "World coordinates."),
-                      field("left-normals", &T::left_normals, "Of the surface left of each segment; null: none."),
-                      field("right-normals", &T::right_normals, "Of the surface right of each segment; null: none.")};
+                      field("left-normals", &T::left_normals, "Normal left of each segment; null: no surface."),
+                      field("right-normals", &T::right_normals, "Normal right of each segment; null: no surface.")};
 }
 
 struct FeaturesDocument {

@@ -17,7 +17,7 @@ namespace {
 
 void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
     constexpr double most =
-        1e-6;  // largest entry of R Rᵀ − I that is accepted: covers truncated digits
+        1e-6;  // largest entry of R Rᵀ − I that counts as rounding; this covers numbers with truncated digits
     const double off = (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (const double determinant = matrix.determinant(); off <= most && determinant < 0)
         throw Error("{}: the matrix is a reflection: its determinant is {:.6g}; a rotation's is 1", place, determinant)
@@ -87,7 +87,7 @@ constexpr auto fields(const PoseDocument*) {
                           .optional(),
                       field("rotation", &T::rotation, "A quaternion x, y, z, w.").optional(),
                       field("translation", &T::translation).optional(),
-                      field("matrix", &T::matrix, "In place of both: four rows.").optional()};
+                      field("matrix", &T::matrix, "Instead of both: four rows.").optional()};
 }
 
 struct PosesDocument {

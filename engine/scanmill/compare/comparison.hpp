@@ -96,7 +96,7 @@ constexpr auto fields(const CostChange*) {
         field("share", &R::share, "The difference as a share of the median before; null: infinite.").nullable(),
         field("passes-before", &R::passes_before),
         field("passes", &R::passes),
-        field("probability", &R::probability, "Of the ranks if nothing changed; null: not computed."),
+        field("probability", &R::probability, "Probability of the ranks if nothing changed; null: not computed."),
         field("rule", &R::rule, "null: there is none.").nullable(),
         field("effect", &R::effect)};
 }

@@ -84,7 +84,7 @@ constexpr auto fields(const OutputRecord*) {
         field("file", &R::file),
         field("kind", &R::kind),
         field("outcome", &R::outcome),
-        field("properties", &R::properties, "Of the value; null: not finite.").by_name(),
+        field("properties", &R::properties, "Properties of the value; null: not finite.").by_name(),
         field("warnings", &R::warnings).optional(),
         field("sha256", &R::sha256, "Hash of the written file.").optional(),
         field("bytes", &R::bytes, "Size of the written file.").optional(),

@@ -93,7 +93,7 @@ struct NodeReport {
     unsigned attempts = 0;
     ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
     Metrics metrics;        ///< the filter's metrics, in declared order
-    Metrics properties;     ///< properties of the primary output, or of the file that was read; empty unless requested
+    Metrics properties;     ///< of the primary output or of the file read; empty unless requested
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
 };
@@ -128,7 +128,7 @@ constexpr auto fields(const OutputReport*) {
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
-    Failure failure;     ///< failure of the first failed node, else of the first failed output
+    Failure failure;     ///< of the first failed node, else of the first failed output
     std::optional<std::size_t> failed_node;  ///< whose failure it is, by index into RunGraph::nodes
     double seconds = 0;  ///< sum over its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;

@@ -33,7 +33,7 @@ void require_valid(const LasHeader& header, std::string_view bytes) {
     if (header.point_format >= point_sizes.size())
         throw Error("has points of format {}; LAS has 0 to {}", header.point_format, point_sizes.size() - 1);
     if (header.points_begin < header.size || header.points_begin > bytes.size())
-        throw Error("the points begin at byte {}, by the header of {}; the file has {}", header.points_begin,
+        throw Error("the points begin at byte {}, but the header has {} and the file {}", header.points_begin,
                     count_text(header.size, "byte", "bytes"), count_text(bytes.size(), "byte", "bytes"))
             .hint(truncated_hint);
     if (header.is_compressed) return;  // refused later, with a hint
