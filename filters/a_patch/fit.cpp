@@ -171,7 +171,7 @@ private:
     struct Sample {
         double value;
         double slope;  ///< |grad F|
-        Barycentric foot;  ///< about the nearest point of the surface; of an outlier a point on the way
+        Barycentric foot;  ///< about the nearest point of the surface; for an outlier, a point on the way there
         double distance() const { return std::abs(value) / slope; }
     };
     Sample sample(const PatchCell& cell, std::size_t point, double most) const {

@@ -46,8 +46,8 @@ constexpr std::size_t most_near = 1000;
 /// The limits of the insertion, then relaxed ones, as region-grow relaxes its own: longest edge, least angle, dihedral
 /// deviation, and the angles to the normals of points on faces and at edges. The limits to the points' own normals keep
 /// sheets apart and boundaries open. So do the short edges of the insertion: the next sheet is farther away than the
-/// next point of the same one. Of 0.5, 0.6, 2/3, 0.7, 0.75, 0.85 and 1 only two thirds joins sheets 1.5 spacings apart
-/// at their borders alone; on 26 thinned models it leaves as many loops as 1, and fewer unused points.
+/// next point of the same one. The tested shares are 0.5, 0.6, 2/3, 0.7, 0.75, 0.85 and 1. Only 2/3 joins sheets 1.5
+/// spacings apart at their borders alone; on 26 thinned models it leaves as many loops as 1, and fewer unused points.
 const std::array<Limits, 5> passes{{{2.0 / 3, sine(5), 0, cosine(60), cosine(85), true, true, false},
                                     {1, sine(5), 0, cosine(60), cosine(85), true, true, false},
                                     {1, sine(3), cosine(105), cosine(75), cosine(110), true, true, true},

@@ -151,7 +151,7 @@ struct Comparison {
     std::string batch, file;
     RunFacts run;
     std::optional<RunFacts> accepted;      ///< nothing: there is none
-    std::optional<Acceptance> acceptance;  ///< nothing: the run to compare with was chosen otherwise
+    std::optional<Acceptance> acceptance;  ///< empty: the run to compare with was chosen otherwise
     std::string accepted_folder;           ///< empty: the run's own
     Gate gate;
     Verdict verdict = Verdict::passed;
@@ -203,7 +203,7 @@ std::vector<std::string> metric_names(const Comparison& comparison);
 /// measured, else `seconds`.
 std::string default_metric(const Comparison& comparison);
 
-/// One number of the cell: of a metric as a rule means it, or the median of a cost. Nothing: the cell has none.
+/// One number of the cell: the value of a metric as rules name it, or the median of a cost. Empty: the cell has none.
 std::optional<CellValue> number_of(const CellComparison& cell, std::string_view metric);
 
 }  // namespace scanmill

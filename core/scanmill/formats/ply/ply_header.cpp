@@ -156,7 +156,7 @@ PlyHeader parse_ply_header(std::string_view file) { return HeaderParser(file).pa
 
 void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t left) {
     const bool is_text = encoding == PlyEncoding::ascii;
-    // In binary the scalars and the lengths of empty lists, in text a digit and a separator for each.
+    // Least size of a row. Binary: the scalars and the lengths of empty lists; text: a digit and a separator for each.
     u64 row = 0;
     for (const PlyProperty& property : element.properties)
         row += is_text ? 2 : size_of(property.count_type.value_or(property.type));

@@ -335,7 +335,7 @@ bool TriangleTree::any_near(std::span<const Vec3> hull, double distance,
         points[i] = scaled(hull[i]);
         furthest = std::max(furthest, points[i].cwiseAbs().maxCoeff());
     }
-    // Beyond the rounding of the tests, whose numbers are at most about the furthest coordinate.
+    // The added width exceeds the rounding of the tests, whose numbers are at most about the furthest coordinate.
     const Hull query({points.data(), hull.size()}, distance * scale_ + (1 + furthest) * widening);
     std::array<u32, (arity - 1) * deepest + 1> stack;
     std::size_t waiting = 0;
