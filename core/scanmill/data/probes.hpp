@@ -89,7 +89,7 @@ constexpr auto fields(const ProbeTouch*) {
         field("right-normal", &T::right_normal).means(Meaning::direction),
         field("interior-angle", &T::interior_angle, "Between the faces; null: not defined.").unit("rad").nullable(),
         field("assumed", &T::assumed, "Whether the right normal is an assumption."),
-        field("phi-min", &T::phi_min, "Least admissible direction; null: there is none.").unit("rad").nullable(),
+        field("phi-min", &T::phi_min, "Of the admissible directions; null: there is none.").unit("rad").nullable(),
         field("phi-max", &T::phi_max).unit("rad").nullable(),
         field("phi-known-min", &T::phi_known_min, "For reference points on the left face.").unit("rad").nullable(),
         field("phi-known-max", &T::phi_known_max).unit("rad").nullable(),
@@ -100,11 +100,11 @@ constexpr auto fields(const ProbeTouch*) {
         field("start", &T::start, "The ball's centre where the approach begins.")
             .means(Meaning::position)
             .only_if(is_made),
-        field("centre", &T::centre, "The ball's centre at the contact, as predicted.")
+        field("centre", &T::centre, "Of the ball at the contact, as predicted.")
             .means(Meaning::position)
             .only_if(is_made),
         field("reason", &T::reason, "Why the touch is not made."),
-        field("false-share", &T::false_share, "Share of the admissible reference points.").nullable(),
+        field("false-share", &T::false_share, "Of the admissible reference points.").nullable(),
         field("contact", &T::contact, "What the ball meets first."),
         field("contact-distance", &T::contact_distance, "From the reference point.").means(Meaning::length).nullable(),
         field("order", &T::order, "Position in the order of touches, from 0.").nullable()};

@@ -23,9 +23,7 @@ struct Marker {
     std::string name;
     Vec3 at;
 };
-constexpr auto fields(const Marker*) {
-    return std::tuple{field("name", &Marker::name), field("at", &Marker::at).means(Meaning::position)};
-}
+constexpr auto fields(const Marker*) { return std::tuple{field("name", &Marker::name), field("at", &Marker::at)}; }
 
 struct MarkersDocument {
     Frame frame;
