@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes schemas/ and docs/filters/ with the built program: `generate.sh build/dev`. With `check` as second argument it
-# changes nothing, and fails if the committed files differ from the filters' declarations. If the program lacks a filter of
-# this tree, that filter would lose its page; nothing is written then.
+# Writes schemas/ and docs/filters/ with the built program: `generate.sh build/dev`, and bench/RESULTS.md, which marks the
+# results of older versions of filters. With `check` as second argument it changes nothing, and fails if the committed files
+# differ from the filters' declarations. If the program lacks a filter of this tree, that filter would lose its page; nothing
+# is written then.
 set -euo pipefail
 build=$1
 program=$(realpath "$build")/bin/scanmill
@@ -25,12 +26,24 @@ made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 "$program" schema -o "$made/schemas"
 "$program" docs -o "$made/docs/filters"
+results() {  # from the pages in docs/filters
+    mkdir -p "$made/bench"
+    cp bench/results.json "$made/bench"
+    python3 -B bench/peers/run.py "$build" --only-table --into "$made/bench"
+}
 if [ "${2:-}" = check ]; then
     if ! diff -ru --exclude=workflow.schema.json schemas "$made/schemas" || ! diff -ru docs/filters "$made/docs/filters"; then
         echo "error: schemas/ or docs/filters/ are not what the filters declare; run: make generate" >&2
         exit 1
     fi
+    results
+    if ! diff -u bench/RESULTS.md "$made/bench/RESULTS.md"; then
+        echo "error: bench/RESULTS.md does not mark the results of older versions of filters; run: make generate" >&2
+        exit 1
+    fi
 else
     rm -rf docs/filters
     cp -r "$made/schemas" "$made/docs" .
+    results
+    cp "$made/bench/RESULTS.md" bench
 fi

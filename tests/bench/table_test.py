@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures by hand, and the page that a small results.json gives."""
+import pathlib
+import tempfile
 import unittest
+from unittest import mock
 
-from harness import figures, machine, table
+from harness import figures, filters, machine, table
 from run import trouble
 
 
@@ -23,6 +26,7 @@ def results(entries, failure=""):
     }
     row = {
         "name": "thin", "title": "Thinning", "equal": "the points", "failure": failure, "rounds": 3, "load": load,
+        "filters": {},
         "inputs": [{"what": "a torus", "points": 1000}], "contenders": entries,
     }
     return {
@@ -173,6 +177,37 @@ class PageTest(unittest.TestCase):
 
     def test_other_load_stands_below(self):
         self.assertIn("Other load: 0.50 cores by other processes", self.page(entry("scanmill", [1.0])))
+
+
+class OutdatedTest(unittest.TestCase):
+    def page(self, measured):
+        small = results([entry("scanmill", [1.0])])
+        small["rows"][0]["filters"] = measured
+        with mock.patch.object(filters, "version", {"decimate": 4, "measure": 3}.__getitem__):
+            return table.page(small)
+
+    def test_row_shows_the_versions_that_it_measured(self):
+        page = self.page({"decimate": 4, "measure": 3})
+        self.assertIn("version 4 of decimate, 3 of measure", page)
+        self.assertNotIn("**outdated**", page)
+
+    def test_row_of_an_older_version_is_marked_with_both_numbers(self):
+        page = self.page({"decimate": 3, "measure": 3})
+        self.assertIn("## Thinning\n\n**outdated**: decimate 3, now 4\n", page)
+
+    def test_row_of_a_removed_filter_is_marked(self):
+        self.assertIn("**outdated**: collapse 1, now removed", self.page({"collapse": 1}))
+
+    def test_version_is_read_from_the_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "crop.md").write_text("# crop\n\nSource: Ericson 2005. Version 12.\n\nVersion of all.\n")
+            self.assertEqual(filters.version("crop", folder), 12)
+            with self.assertRaises(KeyError):
+                filters.version("decimate", folder)
+
+    def test_pages_of_this_tree_show_a_version(self):
+        for page in filters.PAGES.glob("[!R]*.md"):
+            self.assertGreaterEqual(filters.version(page.stem), 1)
 
 
 class TroubleTest(unittest.TestCase):

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -81,6 +83,8 @@ RawInput read_raw(const std::string& path) {
     if (std::ifstream(path + ".triangles").good())
         input.triangles = read_array<std::array<std::uint32_t, 3>>(path + ".triangles");
     if (std::ifstream(path + ".weights").good()) input.weights = read_array<double>(path + ".weights");
+    if (std::ifstream(path + ".normals").good())
+        input.normals = read_array<std::array<double, 3>>(path + ".normals");
     return input;
 }
 
@@ -89,9 +93,50 @@ void write_raw(const std::string& path, const RawInput& input) {
     if (!input.triangles.empty()) write_array(path + ".triangles", input.triangles);
     std::remove((path + ".weights").c_str());
     if (!input.weights.empty()) write_array(path + ".weights", input.weights);
+    std::remove((path + ".normals").c_str());
+    if (!input.normals.empty()) write_array(path + ".normals", input.normals);
     write_array(path + ".points", input.points);
 }
 
 unsigned threads_of(const Json& request) { return request.value("threads", 1u); }
+
+Json directions(const Json& request, const Vectors& points, const Vectors& normals) {
+    const auto count = static_cast<double>(normals.size());
+    const auto along_x = std::ranges::count_if(normals, [](const auto& n) {
+        return std::abs(n[0]) > std::abs(n[1]) && std::abs(n[0]) > std::abs(n[2]);
+    });
+    Json answer{{"along_x", static_cast<double>(along_x) / count}};
+    if (!request.value("oriented", false)) return answer;
+    double flux = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) flux += normals[i][axis] * points[i][axis];
+    answer["flux"] = flux / count;
+    return answer;
+}
+
+double enclosed_volume(const Vectors& points, const TriangleIndices& triangles) {
+    double six_volumes = 0;
+    for (const auto& [i, j, k] : triangles) {
+        const auto& [ax, ay, az] = points[i];
+        const auto& [bx, by, bz] = points[j];
+        const auto& [cx, cy, cz] = points[k];
+        six_volumes += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+    }
+    return six_volumes / 6;
+}
+
+std::size_t boundary_edges(const TriangleIndices& triangles) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (const auto& [a, b, c] : triangles)
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+            edges.push_back({std::min(from, to), std::max(from, to)});
+    std::ranges::sort(edges);
+    std::size_t count = 0;
+    for (std::size_t i = 0, next; i < edges.size(); i = next) {
+        for (next = i + 1; next < edges.size() && edges[next] == edges[i];) ++next;
+        count += next == i + 1;
+    }
+    return count;
+}
 
 }  // namespace peers

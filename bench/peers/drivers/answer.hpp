@@ -31,13 +31,18 @@ double seconds_of(Work&& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// The content of PATH.points, PATH.triangles and PATH.weights: see harness/inputs.py.
+using Vectors = std::vector<std::array<double, 3>>;
+using TriangleIndices = std::vector<std::array<std::uint32_t, 3>>;
+
+/// The content of PATH.points, PATH.triangles, PATH.weights and PATH.normals: see harness/inputs.py.
 struct RawInput {
-    std::vector<std::array<double, 3>> points;
+    Vectors points;
     /// Empty for a cloud.
-    std::vector<std::array<std::uint32_t, 3>> triangles;
+    TriangleIndices triangles;
     /// Squared lengths, one per point; or empty.
     std::vector<double> weights;
+    /// Unit vectors, one per point; or empty.
+    Vectors normals;
 
     /// The counts as an answer.
     Json counts() const;
@@ -49,5 +54,14 @@ void write_raw(const std::string& path, const RawInput& input);
 
 /// The request's "threads"; 1 by default.
 unsigned threads_of(const Json& request);
+
+/// The answer about normals: "along_x", the share of normals with x as their largest component; with "oriented" in the
+/// request also "flux", the mean product of normal and point, which is positive where normals point away from the
+/// origin.
+Json directions(const Json& request, const Vectors& points, const Vectors& normals);
+/// The volume that the triangles enclose if they are closed; negative if they face inwards.
+double enclosed_volume(const Vectors& points, const TriangleIndices& triangles);
+/// Edges in exactly one triangle.
+std::size_t boundary_edges(const TriangleIndices& triangles);
 
 }  // namespace peers

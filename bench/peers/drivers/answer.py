@@ -39,6 +39,12 @@ def read_points(path):
     return numpy.fromfile(path + ".points").reshape(-1, 3)
 
 
+def read_normals(path):
+    """#points by 3 doubles; None without normals."""
+    path = pathlib.Path(path + ".normals")
+    return numpy.fromfile(path).reshape(-1, 3) if path.exists() else None
+
+
 def read_triangles(path):
     """#triangles by 3 indices; empty for a cloud."""
     path = pathlib.Path(path + ".triangles")
@@ -52,6 +58,45 @@ def of_decimation(request, seconds, points, triangles):
         numpy.ascontiguousarray(points, numpy.float64).tofile(request["into"] + ".points")
         numpy.ascontiguousarray(triangles, numpy.uint32).tofile(request["into"] + ".triangles")
     return {"seconds": seconds, "triangles": len(triangles)}
+
+
+def enclosed_volume(points, triangles):
+    """The volume that the triangles enclose if they are closed; negative if they face inwards."""
+    a, b, c = (numpy.asarray(points, numpy.float64)[numpy.asarray(triangles)[:, corner]] for corner in range(3))
+    return float(numpy.einsum("ij,ij->i", a, numpy.cross(b, c)).sum() / 6)
+
+
+def boundary_edges(triangles):
+    """Number of edges in exactly one triangle."""
+    triangles = numpy.asarray(triangles)
+    edges = numpy.sort(numpy.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    return int((numpy.unique(edges, axis=0, return_counts=True)[1] == 1).sum())
+
+
+def of_reconstruction(seconds, points, triangles):
+    """The answer to "poisson"."""
+    return {"seconds": seconds, "triangles": len(triangles), "volume": enclosed_volume(points, triangles)}
+
+
+def of_filling(seconds, points, triangles):
+    """The answer to "fill-holes"."""
+    return {"seconds": seconds, "boundary_edges": boundary_edges(triangles), "triangles": len(triangles),
+            "volume": enclosed_volume(points, triangles)}
+
+
+def of_repair(seconds, points, triangles):
+    """The answer to "repair"."""
+    return {"seconds": seconds, "points": len(points), "boundary_edges": boundary_edges(triangles),
+            "enclosed": abs(enclosed_volume(points, triangles))}
+
+
+def directions(request, points, normals):
+    """The answer about normals; see answer.hpp."""
+    size = numpy.abs(normals)
+    answer = {"along_x": float(((size[:, 0] > size[:, 1]) & (size[:, 0] > size[:, 2])).mean())}
+    if request.get("oriented"):
+        answer["flux"] = float((numpy.asarray(points) * normals).sum(axis=1).mean())
+    return answer
 
 
 def of_distances(seconds, building, distances):

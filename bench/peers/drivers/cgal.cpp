@@ -23,6 +23,10 @@ int main() {
                    {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
                    {"advancing-front", of_input(advancing_front)},
                    {"remove-outliers", of_input(remove_outliers)},
+                   {"normals", of_input(normals)},
+                   {"smooth", of_input(smooth)},
+                   {"fill-holes", of_input(fill_holes)},
+                   {"repair", of_input(repair)},
                    {"decimate", of_input(decimate)},
                    {"distances", [&](const Json& request) { return distances(input, points, request); }}},
                   {{"CGAL", CGAL_VERSION_STR}});

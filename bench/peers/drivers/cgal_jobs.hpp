@@ -20,6 +20,14 @@ Json advancing_front(const RawInput& input, const Json& request);
 Json distances(const RawInput& mesh, const RawInput& points, const Json& request);
 /// remove_outliers, which removes the "percent" with the largest mean squared distances.
 Json remove_outliers(const RawInput& input, const Json& request);
+/// pca_estimate_normals, or with "jet" jet_estimate_normals; with "oriented" then mst_orient_normals.
+Json normals(const RawInput& input, const Json& request);
+/// jet_smooth_point_set.
+Json smooth(const RawInput& input, const Json& request);
+/// triangulate_refine_and_fair_hole for every boundary cycle. The time includes the conversion to a Surface_mesh.
+Json fill_holes(const RawInput& input, const Json& request);
+/// repair_polygon_soup and orient_polygon_soup.
+Json repair(const RawInput& input, const Json& request);
 /// edge_collapse with Garland and Heckbert's quadrics until "triangles" are left. Writes the mesh "into" raw arrays.
 Json decimate(const RawInput& input, const Json& request);
 

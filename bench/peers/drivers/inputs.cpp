@@ -3,11 +3,14 @@
 /// floats work on the same points.
 ///
 /// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT |
-///                    weighted RAW OUT
+///                    weighted RAW OUT | oriented RAW OUT | soup RAW OUT | holes RAW COUNT OUT
 ///   scan          the points of a file, and its triangles if it has any
 ///   torus         350000 or 3500000 evenly spread points in random order, on a bumpy torus with radii 1 and 0.4
 ///   random-torus  independent points, uniform by area, on a torus without bumps with these radii
 ///   weighted      the points of RAW with the weights of `delaunay: {weights: spacing}`
+///   oriented      the points of RAW with normals of the mesh at its vertices, weighted by the triangles' areas
+///   soup          the triangles of RAW, each with three points of its own, and every third one reversed
+///   holes         RAW without the triangles within four edges of COUNT vertices, which are spread over the rows
 ///   around        points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
 
 #include <Eigen/Geometry>
@@ -133,6 +136,45 @@ RawInput weighted(const RawInput& given) {
     return {given.points, {}, {weights.begin(), weights.end()}};
 }
 
+RawInput oriented(RawInput mesh) {
+    std::vector<Vec3> sums(mesh.points.size(), Vec3::Zero());
+    for (const auto& triangle : mesh.triangles) {
+        const auto [a, b, c] = triangle;
+        const Vec3 twice_area = (corner(mesh, b) - corner(mesh, a)).cross(corner(mesh, c) - corner(mesh, a));
+        for (const std::uint32_t vertex : triangle) sums[vertex] += twice_area;
+    }
+    for (const Vec3& sum : sums) mesh.normals.push_back(rounded(sum.normalized()));
+    mesh.triangles.clear();
+    return mesh;
+}
+
+RawInput soup(const RawInput& mesh) {
+    RawInput raw;
+    for (const auto& triangle : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(raw.points.size());
+        for (const std::uint32_t vertex : triangle) raw.points.push_back(mesh.points.at(vertex));
+        const bool reversed = raw.triangles.size() % 3 == 0;
+        raw.triangles.push_back({first, first + (reversed ? 2 : 1), first + (reversed ? 1 : 2)});
+    }
+    return raw;
+}
+
+RawInput with_holes(RawInput mesh, std::size_t count) {
+    std::vector<bool> near(mesh.points.size(), false);
+    for (std::size_t hole = 0; hole < count; ++hole) near[mesh.points.size() * hole / count] = true;
+    for (int ring = 0; ring < 4; ++ring) {
+        std::vector<bool> wider = near;
+        for (const auto& triangle : mesh.triangles)
+            if (std::ranges::any_of(triangle, [&](std::uint32_t vertex) { return near[vertex]; }))
+                for (const std::uint32_t vertex : triangle) wider[vertex] = true;
+        near = std::move(wider);
+    }
+    std::erase_if(mesh.triangles, [&](const auto& triangle) {
+        return std::ranges::all_of(triangle, [&](std::uint32_t vertex) { return near[vertex]; });
+    });
+    return mesh;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -147,10 +189,16 @@ int main(int argc, char** argv) try {
         write_raw(words[3], around(peers::read_raw(words[1]), std::stoul(words[2])));
     else if (words.size() == 3 && words[0] == "weighted")
         write_raw(words[2], weighted(peers::read_raw(words[1])));
+    else if (words.size() == 3 && words[0] == "oriented")
+        write_raw(words[2], oriented(peers::read_raw(words[1])));
+    else if (words.size() == 3 && words[0] == "soup")
+        write_raw(words[2], soup(peers::read_raw(words[1])));
+    else if (words.size() == 4 && words[0] == "holes")
+        write_raw(words[3], with_holes(peers::read_raw(words[1]), std::stoul(words[2])));
     else
         throw std::runtime_error(
             "usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT | "
-            "weighted RAW OUT");
+            "weighted RAW OUT | oriented RAW OUT | soup RAW OUT | holes RAW COUNT OUT");
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -1,26 +1,75 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Open3D: voxels, alpha shapes, distances, decimation."""
+"""Open3D: voxels, normals, alpha shapes, Poisson reconstruction, distances, decimation."""
+import numpy
 import open3d
 
-from answer import answer, of_decimation, of_distances, read_points, read_triangles, timed
+from answer import answer, directions, of_decimation, of_distances, of_reconstruction
+from answer import read_normals, read_points, read_triangles, timed
 
 held = {}
+
+
+def mesh_of(points, triangles):
+    return open3d.geometry.TriangleMesh(points, open3d.utility.Vector3iVector(triangles.astype("int32")))
 
 
 def load(request):
     points, triangles = read_points(request["path"]), read_triangles(request["path"])
     held["cloud"] = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
-    held["mesh"] = open3d.geometry.TriangleMesh(
-        held["cloud"].points, open3d.utility.Vector3iVector(triangles.astype("int32"))
-    )
+    held["mesh"] = mesh_of(held["cloud"].points, triangles)
+    normals = read_normals(request["path"])
+    if normals is not None:
+        held["cloud"].normals = open3d.utility.Vector3dVector(normals)
     if "points" in request:
         held["queries"] = open3d.core.Tensor(read_points(request["points"]).astype("float32"))
+        held["truth"] = mesh_of(open3d.utility.Vector3dVector(read_points(request["points"])),
+                                read_triangles(request["points"]))
     return {"points": len(points), "triangles": len(triangles)}
 
 
 def voxel_thin(request):
     seconds, thinned = timed(lambda: held["cloud"].voxel_down_sample(request["bin_size"]))
     return {"seconds": seconds, "kept": len(thinned.points)}
+
+
+def normals(request):
+    """The normals of planes through the nearest points, the point itself included."""
+    cloud, neighbours = open3d.geometry.PointCloud(held["cloud"].points), request["neighbours"]
+
+    def work():
+        cloud.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(neighbours + 1))
+        if request.get("oriented"):
+            cloud.orient_normals_consistent_tangent_plane(neighbours + 1)
+
+    seconds, _ = timed(work)
+    return {"seconds": seconds, **directions(request, cloud.points, numpy.asarray(cloud.normals))}
+
+
+def poisson(request):
+    make = open3d.geometry.TriangleMesh.create_from_point_cloud_poisson
+    depth, scale = request["depth"], request["scale"]
+    seconds, (mesh, _) = timed(lambda: make(held["cloud"], depth=depth, scale=scale, n_threads=1))
+    return of_reconstruction(seconds, mesh.vertices, mesh.triangles)
+
+
+def measure(request):
+    """Distances of uniform samples in both directions."""
+    means = []
+
+    def one_way(samples_of, mesh):
+        scene = open3d.t.geometry.RaycastingScene(nthreads=request["threads"])
+        scene.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(mesh))
+        points = numpy.asarray(samples_of.sample_points_uniformly(request["samples"]).points).astype("float32")
+        found = scene.compute_distance(open3d.core.Tensor(points), nthreads=request["threads"])
+        means.append(float(found.numpy().astype("float64").mean()))
+
+    def work():
+        one_way(held["mesh"], held["truth"])
+        one_way(held["truth"], held["mesh"])
+        return held["mesh"].get_surface_area()
+
+    seconds, area = timed(work)
+    return {"seconds": seconds, "mean": sum(means) / 2, "area": area}
 
 
 def alpha_shape(request):
@@ -50,6 +99,7 @@ def decimate(request):
 
 
 answer(
-    {"load": load, "voxel-thin": voxel_thin, "alpha-shape": alpha_shape, "distances": distances, "decimate": decimate},
+    {"load": load, "voxel-thin": voxel_thin, "normals": normals, "alpha-shape": alpha_shape, "poisson": poisson,
+     "measure": measure, "distances": distances, "decimate": decimate},
     {"Open3D": open3d.__version__},
 )

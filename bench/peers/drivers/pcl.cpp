@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// PCL's grids, outlier removal, normals and greedy triangulation, as in its tutorials: points of 16 bytes in single
-/// precision. All but the normals run in one thread.
+/// PCL's grids, outlier removal, normals, greedy triangulation and Poisson reconstruction, as in its tutorials: points
+/// of 16 bytes in single precision. All but the normals run in one thread.
 
 #include <pcl/features/normal_3d.h>
 #include <pcl/features/normal_3d_omp.h>
@@ -11,10 +11,9 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/gp3.h>
+#include <pcl/surface/poisson.h>
 
 #include <algorithm>
-
-#include <cmath>
 
 #include "answer.hpp"
 
@@ -23,9 +22,14 @@ namespace {
 using peers::Json;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-Json load(Cloud& cloud, const Json& request) {
+using Normals = pcl::PointCloud<pcl::Normal>;
+
+/// `normals` stays empty if the input has none.
+Json load(Cloud& cloud, Normals& normals, const Json& request) {
     const peers::RawInput raw = peers::read_raw(request.at("path"));
-    cloud.clear();
+    cloud.clear(), normals.clear();
+    for (const auto& [x, y, z] : raw.normals)
+        normals.push_back(pcl::Normal(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)));
     for (const auto& [x, y, z] : raw.points)
         cloud.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
     return raw.counts();
@@ -72,19 +76,42 @@ Json remove_outliers(const Cloud::Ptr& cloud, const Json& request) {
 /// Estimates the normal of every point from its nearest points, itself included. Programs are compared by the
 /// share of normals with x as their largest component.
 Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
-    pcl::PointCloud<pcl::Normal> normals;
+    Normals normals;
     const double seconds = peers::seconds_of([&] {
         pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(peers::threads_of(request));
         estimation.setInputCloud(cloud);
         estimation.setKSearch(request.at("neighbours").get<int>() + 1);
         estimation.compute(normals);
     });
-    std::size_t along_x = 0;
-    for (const pcl::Normal& n : normals) {
-        const float x = std::abs(n.normal_x);
-        along_x += x > std::abs(n.normal_y) && x > std::abs(n.normal_z);
-    }
-    return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(normals.size())}};
+    peers::Vectors vectors;
+    for (const pcl::Normal& n : normals) vectors.push_back({n.normal_x, n.normal_y, n.normal_z});
+    Json answer = peers::directions(request, {}, vectors);  // PCL does not orient
+    answer["seconds"] = seconds;
+    return answer;
+}
+
+Json poisson(const Cloud& cloud, const Normals& normals, const Json& request) {
+    const auto both = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+    pcl::concatenateFields(cloud, normals, *both);
+    pcl::PointCloud<pcl::PointNormal> vertices;
+    std::vector<pcl::Vertices> polygons;
+    const double seconds = peers::seconds_of([&] {
+        pcl::Poisson<pcl::PointNormal> reconstruction;
+        reconstruction.setDepth(request.at("depth").get<int>());
+        reconstruction.setScale(request.at("scale").get<float>());
+        reconstruction.setThreads(1);
+        reconstruction.setInputCloud(both);
+        reconstruction.reconstruct(vertices, polygons);
+    });
+    peers::RawInput mesh;
+    for (const pcl::PointNormal& p : vertices) mesh.points.push_back({p.x, p.y, p.z});
+    for (const pcl::Vertices& polygon : polygons)
+        mesh.triangles.push_back({static_cast<std::uint32_t>(polygon.vertices[0]),
+                                  static_cast<std::uint32_t>(polygon.vertices[1]),
+                                  static_cast<std::uint32_t>(polygon.vertices[2])});
+    return {{"seconds", seconds},
+            {"triangles", mesh.triangles.size()},
+            {"volume", peers::enclosed_volume(mesh.points, mesh.triangles)}};
 }
 
 /// Estimates normals from 20 neighbours, then triangulates with the angles of the tutorial. The radius is a parameter,
@@ -97,7 +124,7 @@ Json project_greedily(const Cloud::Ptr& cloud, const Json& request) {
         estimation.setInputCloud(cloud);
         estimation.setSearchMethod(tree);
         estimation.setKSearch(20);
-        pcl::PointCloud<pcl::Normal> normals;
+        Normals normals;
         estimation.compute(normals);
         const auto both = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
         pcl::concatenateFields(*cloud, normals, *both);
@@ -125,7 +152,9 @@ Json project_greedily(const Cloud::Ptr& cloud, const Json& request) {
 
 int main() {
     const auto cloud = pcl::make_shared<Cloud>();
-    return peers::answer({{"load", [&](const Json& request) { return load(*cloud, request); }},
+    Normals normals;
+    return peers::answer({{"load", [&](const Json& request) { return load(*cloud, normals, request); }},
+                          {"poisson", [&](const Json& request) { return poisson(*cloud, normals, request); }},
                           {"uniform-sampling", [&](const Json& request) { return sample_uniformly(cloud, request); }},
                           {"voxel-grid", [&](const Json& request) { return average(cloud, request); }},
                           {"remove-outliers", [&](const Json& request) { return remove_outliers(cloud, request); }},

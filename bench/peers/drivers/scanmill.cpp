@@ -6,19 +6,27 @@
 #include <optional>
 #include <variant>
 
+#include "a_patch/a_patch.hpp"
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
 #include "cluster_mesh/cluster_mesh.hpp"
 #include "decimate/decimate.hpp"
 #include "delaunay/delaunay.hpp"
+#include "fill_holes/fill_holes.hpp"
+#include "measure/measure.hpp"
+#include "normals/normals.hpp"
 #include "outlier_removal/outlier_removal.hpp"
+#include "poisson/poisson.hpp"
 #include "region_grow/region_grow.hpp"
+#include "repair/repair.hpp"
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/certified_hausdorff.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/fit/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
+#include "smooth/smooth.hpp"
+#include "tessellate/tessellate.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace {
@@ -31,7 +39,15 @@ struct Held {
     PointCloud cloud;
     Array<Triangle> triangles;
     Array<Vec3> queries;
+    Array<Triangle> query_triangles;
     Value file;
+
+    TriangleMesh mesh() const {
+        TriangleMesh mesh;
+        mesh.positions = cloud.positions;
+        mesh.triangles = triangles;
+        return mesh;
+    }
 };
 
 Context context_for(const Json& request) {
@@ -46,6 +62,13 @@ Array<Vec3> positions_of(const peers::RawInput& raw) {
     return positions;
 }
 
+peers::RawInput raw_of(const TriangleMesh& mesh) {
+    peers::RawInput raw;
+    for (const Vec3& p : mesh.positions) raw.points.push_back({p.x(), p.y(), p.z()});
+    raw.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+    return raw;
+}
+
 Json load(Held& held, const Json& request) {
     const peers::RawInput raw = peers::read_raw(request.at("path"));
     held.cloud.positions = positions_of(raw);
@@ -53,8 +76,18 @@ Json load(Held& held, const Json& request) {
     if (!raw.weights.empty())
         held.cloud.columns.add(
             Column("weight", 1, Buffer<double>(Array<double>(raw.weights.begin(), raw.weights.end()))));
+    if (!raw.normals.empty()) {
+        Array<float> normals;
+        for (const auto& normal : raw.normals)
+            for (const double number : normal) normals.push_back(static_cast<float>(number));
+        held.cloud.columns.add(Column("normal", 3, Buffer<float>(std::move(normals))));
+    }
     held.triangles.assign(raw.triangles.begin(), raw.triangles.end());
-    if (request.contains("points")) held.queries = positions_of(peers::read_raw(request["points"]));
+    if (request.contains("points")) {
+        const peers::RawInput queries = peers::read_raw(request["points"]);
+        held.queries = positions_of(queries);
+        held.query_triangles.assign(queries.triangles.begin(), queries.triangles.end());
+    }
     return raw.counts();
 }
 
@@ -119,6 +152,36 @@ Json curvature(Held& held, const Json& request) {
         along_x += n.x() > n.y() && n.x() > n.z();
     }
     return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(index_of_row.size())}};
+}
+
+/// With "jet" by jets, else by planes; with "oriented" along a spanning tree.
+Json estimate_normals(Held& held, const Json& request) {
+    NormalsParams params;
+    params.neighbours = request.at("neighbours").get<u32>();
+    params.method = request.value("jet", false) ? NormalsParams::Method::jet : NormalsParams::Method::pca;
+    params.orient = request.value("oriented", false) ? NormalsParams::Orient::tree : NormalsParams::Orient::none;
+    Context context = context_for(request);
+    NormalsResult result;
+    const double seconds = peers::seconds_of([&] { result = normals(held.cloud, params, context); });
+    peers::Vectors points, vectors;
+    const std::span<const float> values = result.points.columns.find("normal")->values<float>();
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        const Vec3& p = result.points.positions[i];
+        points.push_back({p.x(), p.y(), p.z()});
+        vectors.push_back({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+    }
+    Json answer = peers::directions(request, points, vectors);
+    answer["seconds"] = seconds;
+    return answer;
+}
+
+Json smoothed(Held& held, const Json& request) {
+    SmoothParams params;
+    params.neighbours = request.at("neighbours").get<u32>();
+    Context context = context_for(request);
+    SmoothResult result;
+    const double seconds = peers::seconds_of([&] { result = smooth(held.cloud, params, context); });
+    return {{"seconds", seconds}, {"moved_rms", result.moved_rms}};
 }
 
 Json tetrahedralise(Held& held, const Json& request) {
@@ -210,12 +273,76 @@ Json distances(Held& held, const Json& request) {
             {"max", *std::ranges::max_element(found.distances)}};
 }
 
+Json reconstructed(Held& held, const Json& request) {
+    PoissonParams params;
+    params.depth = request.at("depth").get<u32>();
+    params.scale = request.at("scale").get<double>();
+    params.trim = Ratio::percent(0);
+    Context context = context_for(request);
+    PoissonResult result;
+    const double seconds = peers::seconds_of([&] { result = poisson(held.cloud, params, context); });
+    const peers::RawInput mesh = raw_of(result.mesh);
+    return {{"seconds", seconds},
+            {"triangles", mesh.triangles.size()},
+            {"volume", peers::enclosed_volume(mesh.points, mesh.triangles)}};
+}
+
+Json filled(Held& held, const Json& request) {
+    const TriangleMesh mesh = held.mesh();
+    Context context = context_for(request);
+    FillHolesResult result;
+    const double seconds = peers::seconds_of([&] { result = fill_holes(mesh, {}, context); });
+    const peers::RawInput closed = raw_of(result.mesh);
+    return {{"seconds", seconds},
+            {"boundary_edges", peers::boundary_edges(closed.triangles)},
+            {"triangles", closed.triangles.size()},
+            {"volume", peers::enclosed_volume(closed.points, closed.triangles)}};
+}
+
+Json repaired(Held& held, const Json& request) {
+    const TriangleMesh soup = held.mesh();
+    Context context = context_for(request);
+    RepairResult result;
+    const double seconds = peers::seconds_of([&] { result = repair(soup, {}, context); });
+    const peers::RawInput mesh = raw_of(result.mesh);
+    return {{"seconds", seconds},
+            {"points", mesh.points.size()},
+            {"boundary_edges", peers::boundary_edges(mesh.triangles)},
+            {"enclosed", std::abs(peers::enclosed_volume(mesh.points, mesh.triangles))}};
+}
+
+/// The mesh against the second input, a mesh too, without the search for self-intersections.
+Json measured(Held& held, const Json& request) {
+    const TriangleMesh mesh = held.mesh();
+    TriangleMesh truth;
+    truth.positions = held.queries;
+    truth.triangles = held.query_triangles;
+    MeasureParams params;
+    params.samples = request.at("samples").get<u32>();
+    params.self_intersections = false;
+    Context context = context_for(request);
+    std::optional<Measurement> result;
+    const double seconds = peers::seconds_of([&] { result = measure(mesh, truth, params, context); });
+    return {{"seconds", seconds}, {"mean", result->chamfer.value()}, {"area", result->mesh.area}};
+}
+
+/// A smooth surface through the vertices, and triangles on it with every edge in "segments" parts.
+Json patched(Held& held, const Json& request) {
+    const TriangleMesh mesh = held.mesh();
+    Context context = context_for(request);
+    APatchResult patches;
+    const double patching = peers::seconds_of([&] { patches = a_patch(mesh, nullptr, {}, context); });
+    TessellateParams params;
+    params.subdivision = request.at("segments").get<u32>();
+    TriangleMesh fine;
+    const double cutting = peers::seconds_of([&] { fine = tessellate(patches.patches, params, context); });
+    return {{"seconds", patching + cutting}, {"a_patch_seconds", patching}, {"triangles", fine.triangles.size()}};
+}
+
 /// Removes vertices until "triangles" are left, within "max_error" percent of the diagonal. The seconds include the
 /// certificate; a second computation of it shows its part.
 Json decimated(Held& held, const Json& request) {
-    TriangleMesh mesh;
-    mesh.positions = held.cloud.positions;
-    mesh.triangles = held.triangles;
+    const TriangleMesh mesh = held.mesh();
     DecimateParams params;
     const BoundingBox box = bounding_box(mesh.positions.span());
     const double max_error = request.at("max_error").get<double>() / 100 * (box.high - box.low).norm();
@@ -245,6 +372,13 @@ int main() {
                           {"voxel-thin", with_held(thin)},
                           {"remove-outliers", with_held(remove_outliers)},
                           {"curvature", with_held(curvature)},
+                          {"normals", with_held(estimate_normals)},
+                          {"smooth", with_held(smoothed)},
+                          {"poisson", with_held(reconstructed)},
+                          {"fill-holes", with_held(filled)},
+                          {"repair", with_held(repaired)},
+                          {"measure", with_held(measured)},
+                          {"a-patch", with_held(patched)},
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""trimesh: reads and writes files, distances."""
+"""trimesh: reads and writes files, repair, distances."""
 import logging
 import os
 
 import trimesh
 
-from answer import answer, of_distances, read_points, read_triangles, timed
+from answer import answer, of_distances, of_repair, read_points, read_triangles, timed
 
 held = {}
 logging.disable(logging.CRITICAL)
@@ -13,7 +13,8 @@ logging.disable(logging.CRITICAL)
 
 def load(request):
     held["arrays"] = read_points(request["path"]), read_triangles(request["path"])
-    held["queries"] = read_points(request["points"])
+    if "points" in request:
+        held["queries"] = read_points(request["points"])
     return {"points": len(held["arrays"][0]), "triangles": len(held["arrays"][1])}
 
 
@@ -49,4 +50,19 @@ def distances(request):
     return of_distances(building + asking, building, found)
 
 
-answer({"load": load, "read": read, "write": write, "distances": distances}, {"trimesh": trimesh.__version__})
+def repair(request):
+    points, triangles = held["arrays"]
+    mesh = trimesh.Trimesh(points, triangles, process=False)
+
+    def work():
+        mesh.merge_vertices()
+        trimesh.repair.fix_winding(mesh)
+
+    seconds, _ = timed(work)
+    return of_repair(seconds, mesh.vertices, mesh.faces)
+
+
+answer(
+    {"load": load, "read": read, "write": write, "repair": repair, "distances": distances},
+    {"trimesh": trimesh.__version__},
+)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK: reads and writes files, decimation. vtkPolyData is in single precision. The STL reader merges equal corners."""
+"""VTK: reads and writes files, repair, subdivision, decimation. vtkPolyData is in single precision. The STL reader merges equal corners."""
 import os
 
 import numpy
@@ -8,9 +8,10 @@ import vtkmodules.vtkIOPLY as ply
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
+from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkPolyDataNormals, vtkQuadricDecimation
+from vtkmodules.vtkFiltersModeling import vtkButterflySubdivisionFilter, vtkFillHolesFilter
 
-from answer import answer, of_decimation, read_points, read_triangles, timed
+from answer import answer, of_decimation, of_filling, of_repair, read_points, read_triangles, timed
 
 readers = {"ply": ply.vtkPLYReader, "stl": geometry.vtkSTLReader}
 writers = {"ply": ply.vtkPLYWriter, "stl": geometry.vtkSTLWriter}
@@ -57,9 +58,47 @@ def decimate(request):
     filter.SetInputData(held["mesh"])
     filter.SetTargetReduction(1 - request["triangles"] / held["mesh"].GetNumberOfPolys())
     seconds, _ = timed(filter.Update)
-    made = filter.GetOutput()
+    return of_decimation(request, seconds, *arrays(filter.GetOutput()))
+
+
+def arrays(made):
     points, triangles = made.GetPoints().GetData(), made.GetPolys().GetConnectivityArray()
-    return of_decimation(request, seconds, vtk_to_numpy(points), vtk_to_numpy(triangles).reshape(-1, 3))
+    return vtk_to_numpy(points), vtk_to_numpy(triangles).reshape(-1, 3)
 
 
-answer({"load": load, "read": read, "write": write, "decimate": decimate}, {"VTK": vtkVersion.GetVTKVersion()})
+def fill_holes(request):
+    """Closes every loop with triangles between its vertices. Its limit is the radius of a sphere round the hole."""
+    filter = vtkFillHolesFilter()
+    filter.SetInputData(held["mesh"])
+    filter.SetHoleSize(1e30)
+    seconds, _ = timed(filter.Update)
+    return of_filling(seconds, *arrays(filter.GetOutput()))
+
+
+def repair(request):
+    """Joins equal points, then orients neighbours equally."""
+    joined, oriented = vtkCleanPolyData(), vtkPolyDataNormals()
+    joined.SetInputData(held["mesh"])
+    joined.ToleranceIsAbsoluteOn()
+    joined.SetAbsoluteTolerance(0)
+    oriented.SetInputConnection(joined.GetOutputPort())
+    oriented.ConsistencyOn()
+    oriented.SplittingOff()
+    seconds, _ = timed(oriented.Update)
+    return of_repair(seconds, *arrays(oriented.GetOutput()))
+
+
+def subdivide(request):
+    """Butterfly: the vertices of the mesh stay."""
+    filter = vtkButterflySubdivisionFilter()
+    filter.SetInputData(held["mesh"])
+    filter.SetNumberOfSubdivisions(request["segments"].bit_length() - 1)
+    seconds, _ = timed(filter.Update)
+    return {"seconds": seconds, "triangles": filter.GetOutput().GetNumberOfPolys()}
+
+
+answer(
+    {"load": load, "read": read, "write": write, "fill-holes": fill_holes, "repair": repair, "subdivide": subdivide,
+     "decimate": decimate},
+    {"VTK": vtkVersion.GetVTKVersion()},
+)

@@ -3,7 +3,7 @@
 
 NAME.points holds three doubles per point, each exactly representable as float, so that programs that store floats work
 on the same points. NAME.triangles (optional) holds three 32-bit indices per triangle, NAME.weights (optional) a double
-per point.
+per point, NAME.normals (optional) three doubles per point.
 """
 import pathlib
 import subprocess
@@ -60,20 +60,36 @@ class Inputs:
     def weighted(self, cloud):
         """The same points with the weights of `delaunay: {weights: spacing}` in NAME.weights."""
 
-        def make(path):
-            cloud.make()
-            self._run_maker(path, [cloud.path.with_suffix(".points")], ["weighted", str(cloud.path)])
+        return self._made_of("weighted", cloud, "weights of their spacing")
 
-        return Input(f"{cloud.describe}; weights of their spacing", self.folder / f"weighted-{cloud.path.name}", make)
+    def oriented(self, mesh):
+        """The vertices of a mesh with its normals in NAME.normals, and without its triangles."""
+        return self._made_of("oriented", mesh, "vertices with normals of the mesh")
+
+    def soup(self, mesh):
+        """The triangles of a mesh, each with three points of its own, and every third one reversed."""
+        return self._made_of("soup", mesh, "every triangle with its own points, every third one reversed")
+
+    def holes(self, mesh, count):
+        """The mesh without the triangles within four edges of `count` vertices."""
+        return self._made_of("holes", mesh, f"without the triangles within four edges of {count} vertices", str(count))
 
     def around(self, mesh, count):
         """Seeded points near a mesh: uniform on it, then moved by up to 1 % of its diagonal along each axis."""
 
-        def make(path):
-            mesh.make()
-            self._run_maker(path, [mesh.path.with_suffix(".points")], ["around", str(mesh.path), str(count)])
+        around = self._made_of("around", mesh, "", str(count))
+        around.describe = "points around it, seed 1"
+        return around
 
-        return Input("points around it, seed 1", self.folder / f"around-{mesh.path.name}-{count}", make)
+    def _made_of(self, kind, source, what, *arguments):
+        """An input that the maker's command `kind` makes of another input."""
+
+        def make(path):
+            source.make()
+            self._run_maker(path, [source.path.with_suffix(".points")], [kind, str(source.path), *arguments])
+
+        name = "-".join([kind, source.path.name, *arguments])
+        return Input(f"{source.describe}; {what}", self.folder / name, make)
 
     def _convert(self, source, path):
         if not source.exists():

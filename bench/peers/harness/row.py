@@ -35,6 +35,8 @@ class Row:
     contenders: List[Contender]
     equal: str  #: a sentence: what is equal for all contenders
     agree: Dict[str, float]  #: facts that must be equal, with the tolerance as a share of the reference
+    #: Names of the filters whose algorithms Scanmill runs here. The record holds their versions.
+    filters: List[str] = field(default_factory=list)
     #: Default number of rounds. Slow contenders do fewer: see turns.py.
     rounds: int = 5
     #: Whether one uncounted round precedes the counted rounds.

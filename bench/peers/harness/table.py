@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes RESULTS.md from results.json. All text of the page comes from the JSON or from this file."""
-from . import figures
+from . import figures, filters
 
 NOTES = """\
 Columns:
@@ -14,6 +14,7 @@ Columns:
 - †: the program does different work, as explained below the table
 - ‡: the program should have the same result but has not, so there is no ratio
 - *failed*: the program failed, so there is no ratio
+- *outdated*: the row measured an older version of the named filter
 
 PDAL has no package in Debian 12 or on PyPI and is not compared."""
 
@@ -121,9 +122,14 @@ def remarks(row, smaller=None):
 def section(row, smaller=None):
     """`smaller` is the record of the row named by grows_from, if that ran too."""
     lines = [f"## {row['title']}", "", f"`ROWS={row['name']}`"]
+    old = filters.outdated(row)
+    if old:
+        lines[2:2] = [f"**outdated**: {', '.join(old)}", ""]
     for one in row["inputs"]:
         counts = ", ".join(f"{value:,} {name}" for name, value in one.items() if name != "what")
         lines[-1] += f" · {one['what']}" + (f": {counts}" if counts else "")
+    if row["filters"]:
+        lines[-1] += " · version " + ", ".join(f"{number} of {name}" for name, number in row["filters"].items())
     lines += ["", f"Equal: {row['equal']}", ""]
     if row["failure"]:
         return lines[:-2] + ["", f"**failed**: {row['failure']}", ""]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs a row. Every contender has its own process, and all work in turn, so that other load on the machine affects all
 of them equally."""
-from . import agreement
+from . import agreement, filters
 from .inputs import Missing
 from .machine import Load
 from .process import Failure, Process
@@ -96,6 +96,7 @@ def run(row, command_of, options):
     record = {"name": row.name, "title": row.title, "equal": row.equal, "rounds": options.rounds or row.rounds}
     record["compares"] = bool(row.agree)
     record.update(peak_per=row.peak_per, grows_from=row.grows_from)
+    record["filters"] = {name: filters.version(name) for name in row.filters}
     record.update(failure="", inputs=[], contenders=[])
     try:
         for one in row.inputs:

@@ -29,5 +29,6 @@ def row(name, shape, cloud, **more):
         ],
         equal="the points in memory. The time includes the tetrahedralisation and the choice of the radius.",
         agree={"alpha": 0, "triangles": 0},
+        filters=["delaunay", "alpha-solid"],
         **more,
     )

@@ -27,4 +27,5 @@ def row(name, shape, cloud, alpha):
         "triangles of its solid are counted after the measurement, for comparison. Open3D delivers the boundary of the "
         "cells with inner walls, compared with CGAL's; its cells come from qhull, whose predicates are not exact.",
         agree={"triangles": 0, "regular_facets": 0},
+        filters=["delaunay", "alpha-solid"],
     )

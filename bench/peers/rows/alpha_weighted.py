@@ -27,6 +27,7 @@ def row(name, shape, cloud, **more):
         equal="the points in memory and their weights, the squares of the local spacing. Scanmill reads the weights "
         "from a column.",
         agree={"cells": 0, "alpha": 0, "triangles": 0},
+        filters=["delaunay", "alpha-solid"],
         peak_per="cells",
         **more,
     )

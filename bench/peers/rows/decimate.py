@@ -51,6 +51,7 @@ def row(name, shape, mesh, triangles, **more):
         equal=f"the mesh in memory and the target number of triangles. Scanmill also keeps to {MAX_ERROR} % of the "
         f"diagonal. Not compared: {UNBOUNDED}. Scanmill's seconds contain the certificate.",
         agree={"triangles": 0.01},
+        filters=["decimate"],
         rounds=3,
         peak_per="input_triangles",
         **more,

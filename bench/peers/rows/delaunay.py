@@ -32,6 +32,7 @@ def row(name, shape, cloud, **more):
         "order with neighbours. CGAL keeps its own structure, whose destruction is not measured. The predicates of "
         "qhull are not exact.",
         agree={"cells": 0, "vertices": 0},
+        filters=["delaunay"],
         peak_per="cells",
         **more,
     )

@@ -32,6 +32,7 @@ def row(name, shape, cloud, **more):
         equal="the points in memory as doubles. Scanmill runs delaunay, alpha-solid with an automatic radius and "
         "sculpt in one process and delivers a mesh; CGAL makes no surface.",
         agree={"cells": 0, "alpha": 0, "triangles": 0, "removed": 0, "interior_points": 0},
+        filters=["delaunay", "alpha-solid", "sculpt"],
         peak_per="cells",
         **more,
     )

@@ -36,6 +36,7 @@ def row(name, shape, cloud, radius, **more):
         "for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of triangles and of unused points "
         "are shown but not compared.",
         agree={},
+        filters=["region-grow", "cluster-mesh"],
         peak_per="triangles",
         **more,
     )
