@@ -83,8 +83,7 @@ RawInput read_raw(const std::string& path) {
     if (std::ifstream(path + ".triangles").good())
         input.triangles = read_array<std::array<std::uint32_t, 3>>(path + ".triangles");
     if (std::ifstream(path + ".weights").good()) input.weights = read_array<double>(path + ".weights");
-    if (std::ifstream(path + ".normals").good())
-        input.normals = read_array<std::array<double, 3>>(path + ".normals");
+    if (std::ifstream(path + ".normals").good()) input.normals = read_array<std::array<double, 3>>(path + ".normals");
     return input;
 }
 
@@ -102,9 +101,8 @@ unsigned threads_of(const Json& request) { return request.value("threads", 1u); 
 
 Json directions(const Json& request, const Vectors& points, const Vectors& normals) {
     const auto count = static_cast<double>(normals.size());
-    const auto along_x = std::ranges::count_if(normals, [](const auto& n) {
-        return std::abs(n[0]) > std::abs(n[1]) && std::abs(n[0]) > std::abs(n[2]);
-    });
+    const auto along_x = std::ranges::count_if(
+        normals, [](const auto& n) { return std::abs(n[0]) > std::abs(n[1]) && std::abs(n[0]) > std::abs(n[2]); });
     Json answer{{"along_x", static_cast<double>(along_x) / count}};
     if (!request.value("oriented", false)) return answer;
     double flux = 0;
