@@ -2,16 +2,17 @@
 #pragma once
 /// Elementary functions whose bits depend neither on the processor nor on the C library.
 ///
-/// The C library chooses between variants of sin, exp and the like by the processor, and their last bits differ. These
+/// The C library selects variants of sin, exp and similar functions for each processor; their last bits differ. These
 /// functions consist of +, -, *, / and powers of two, which IEEE 754 rounds in exactly one way. (All of Scanmill is
-/// compiled with -ffp-contract=off.) Arctangents: geometry/spatial/angle.hpp.
+/// compiled with -ffp-contract=off.) Arctangents are in geometry/spatial/angle.hpp.
 
 #include <cmath>
 #include <numbers>
 
 namespace scanmill::elementary {
 
-/// log x = exponent log 2 + 2 ratio sum / ln(base), with the series of the inverse hyperbolic tangent.
+/// Parts of the logarithm to any base b: log_b x = exponent log_b 2 + 2 ratio sum / ln b. The series of the inverse
+/// hyperbolic tangent, artanh(ratio), is ratio sum.
 struct LogarithmParts {
     int exponent;
     double ratio, sum;
@@ -21,29 +22,30 @@ inline LogarithmParts logarithm_parts(double x) {
     double mantissa = std::frexp(x, &exponent);
     if (mantissa < 1 / std::numbers::sqrt2) mantissa *= 2, --exponent;
     const double ratio = (mantissa - 1) / (mantissa + 1), square = ratio * ratio;
-    double sum = 0;  // of ratio^2k / (2k + 1)
+    double sum = 0;  // sum of ratio^2k / (2k + 1)
     for (int power = 23; power > 0; power -= 2) sum = sum * square + 1.0 / power;
     return {exponent, ratio, sum};
 }
 
-/// Pre: x is finite and above 0. Error: 4 units in the last place, or 2^-53. Powers of two are exact.
+/// Pre: x is finite and above 0. Error: at most 4 units in the last place or 2^-53, whichever is larger. Logarithms of
+/// powers of two are exact.
 inline double log2(double x) {
     const auto [exponent, ratio, sum] = logarithm_parts(x);
     return exponent + 2 / std::numbers::ln2 * ratio * sum;
 }
 
-/// The same for the natural logarithm, but for the powers of two.
+/// The natural logarithm. Pre and error as for log2(), but logarithms of powers of two are not exact.
 inline double log(double x) {
     const auto [exponent, ratio, sum] = logarithm_parts(x);
     return exponent * std::numbers::ln2 + 2 * ratio * sum;
 }
 
 /// Pre: x is finite and above 0; 2^-1022 ≤ x^power < 2^1023.
-/// Error: 4 + 4 |log2 x^power| units in the last place.
+/// Error: at most 4 + 4 |log2 x^power| units in the last place.
 inline double pow(double x, double power) {
     const double exponent = power * log2(x), whole = std::nearbyint(exponent);
     const double rest = std::numbers::ln2 * (exponent - whole);
-    double sum = 1;  // of rest^k / k!
+    double sum = 1;  // sum of rest^k / k!
     for (int k = 18; k > 0; --k) sum = 1 + sum * rest / k;
     return std::ldexp(sum, static_cast<int>(whole));
 }
@@ -51,10 +53,10 @@ inline double pow(double x, double power) {
 struct Turn {
     double cosine, sine;
 };
-/// Cosine and sine of an angle in radians. Pre: |angle| ≤ 3.9, a quarter turn beyond π. Error: 2 units in the last
-/// place; 0 is exact.
+/// Cosine and sine of an angle in radians. Pre: |angle| ≤ 3.9, an eighth of a turn beyond π. Error: at most 2 units in
+/// the last place. The results for angle 0 are exact.
 inline Turn turn_of(double angle) {
-    // Quarter turns in two parts, so that the remainder keeps its digits.
+    // A quarter turn is the sum of two numbers, so that the remainder x keeps its digits.
     constexpr double quarter = 1.5707963267948966, quarter_rest = 6.123233995736766e-17;
     const double quarters = std::floor(angle / quarter + 0.5);
     const double x = (angle - quarters * quarter) - quarters * quarter_rest, square = x * x;

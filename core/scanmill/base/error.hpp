@@ -16,16 +16,16 @@
 
 namespace scanmill {
 
-/// A setting or filter of the program that could help. Core and engine name neither options nor filters: the program
-/// that calls them adds its own for a remedy to the hint.
+/// A setting or filter of the calling program that could solve the problem. Core and engine contain no names of options
+/// or filters. The calling program adds the name for a remedy to the hint.
 enum class Remedy {
     none,
     name_scans,
     name_input_files,
     declare_unit,
     convert_unit,
-    drop_invalid_points,  ///< from a file
-    drop_invalid_rows,    ///< drop the invalid rows of a scan while it is read
+    drop_invalid_points,  ///< remove the invalid points of a file
+    drop_invalid_rows,  ///< drop the invalid rows of a scan while it is read
     choose_output_folder,
     choose_cache_folder,
     run_without_workers,
@@ -48,13 +48,13 @@ public:
     /// For `throw Error(...).hint(...)`.
     Error&& hint(std::string text) &&;
     Error&& remedy(Remedy remedy) &&;
-    /// Ends the sentence with "; expected <forms>". The part before is the finding.
+    /// Ends the sentence with "; expected <forms>". finding() is the sentence before this addition.
     Error&& expected(std::string_view forms) &&;
     /// The same error with another sentence.
     Error reworded(std::string sentence) const;
 
     const std::string& sentence() const { return sentence_; }
-    /// The sentence without what was expected.
+    /// The sentence without "; expected …".
     const std::string& finding() const { return finding_.empty() ? sentence_ : finding_; }
     const std::vector<std::string>& frames() const { return frames_; }
     const std::string& hint() const { return hint_; }
@@ -65,7 +65,7 @@ public:
 private:
     void compose();
     std::string sentence_;
-    std::string finding_;  // empty: the sentence
+    std::string finding_;  // empty if equal to the sentence
     std::vector<std::string> frames_;
     std::string hint_;
     Remedy remedy_ = Remedy::none;

@@ -12,7 +12,7 @@ namespace scanmill {
 struct __attribute__((visibility("default"))) Cancelled {};
 
 struct ExecutionOptions {
-    /// At least 1. Results never depend on it.
+    /// Number of threads, at least 1. Results do not depend on it.
     unsigned threads = 1;
     /// Called from any thread, one call at a time.
     std::function<void(double fraction)> on_progress;
@@ -28,7 +28,8 @@ public:
     Execution& operator=(const Execution&) = delete;
 
     unsigned threads() const { return options_.threads; }
-    /// `fraction` in [0, 1]; NaN (0 of 0 items) counts as 0. Callable from any thread.
+    /// Reports the fraction of the work that is done, from 0 to 1; NaN (0 of 0 items) counts as 0. Callable from any
+    /// thread.
     void progress(double fraction) {
         if (!options_.on_progress) return;
         const std::scoped_lock lock(mutex_);

@@ -8,8 +8,8 @@
 
 namespace scanmill {
 
-/// The hash of a sequence of fields. Each field is hashed as name length, name, value length, value, so different
-/// sequences are different bytes.
+/// The hash of a sequence of fields. The hashed bytes of a field are name length, name, value length and value.
+/// Different sequences therefore have different bytes.
 class KeyBuilder {
 public:
     KeyBuilder& field(std::string_view name, std::string_view value);

@@ -20,8 +20,8 @@ namespace scanmill {
 #ifdef __SANITIZE_THREAD__
 namespace {
 
-/// ThreadSanitizer does not see the synchronisation inside oneTBB's library and would report every task; it understands
-/// plain threads.
+/// ThreadSanitizer does not see the synchronisation inside oneTBB and would report every task. It understands plain
+/// threads.
 void on_plain_threads(unsigned threads, std::size_t chunks, const std::function<void(std::size_t)>& run) {
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
@@ -66,9 +66,9 @@ void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
 
 void within_thread_budget(unsigned threads, const std::function<void()>& body) {
 #ifdef __SANITIZE_THREAD__
-    threads = 1;  // as above
+    threads = 1;  // ThreadSanitizer would report every task
 #endif
-    // The library warns about more threads than the machine has.
+    // oneTBB prints a warning if an arena has more threads than the machine.
     tbb::task_arena arena(std::clamp(static_cast<int>(threads), 1, tbb::info::default_concurrency()));
     arena.execute(body);
 }

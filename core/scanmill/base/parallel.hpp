@@ -17,13 +17,14 @@ namespace scanmill {
 void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
                     const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Runs `body` where oneTBB sees `threads` threads (never more than the machine has): for libraries that parallelise
-/// themselves.
+/// Runs `body` in an arena in which oneTBB uses at most `threads` threads, and never more than the machine has. For
+/// libraries that start parallel oneTBB tasks themselves.
 void within_thread_budget(unsigned threads, const std::function<void()>& body);
 
-/// Produces items in parallel and consumes them in order, with a few buffers: for results that depend on the order,
-/// such as a hash, or are too large to exist all at once. Calls produce(i, buffer) for 0 … count - 1 on up to `threads`
-/// threads, and consume(i, buffer) in this thread in order. Exceptions of both are rethrown to the caller.
+/// Produces items in parallel and consumes them in order; only a few items exist at once. For results that depend on
+/// the order, such as a hash, or that do not fit into memory together.
+/// Calls produce(i, buffer) for 0 … count - 1 on up to `threads` threads, and consume(i, buffer) in this thread in
+/// order. Exceptions of both functions are rethrown to the caller.
 template <class Item, class Produce, class Consume>
 void for_each_in_order(unsigned threads, std::size_t count, Produce&& produce, Consume&& consume) {
     constexpr std::size_t buffers_per_thread = 4;

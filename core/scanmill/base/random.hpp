@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A small seeded generator with the same numbers on every machine and for any number of threads: parallel work takes a
-/// cheap stream per chunk or per item (random.stream(i)) and shares no state. SplitMix64 (Steele, Lea, Flood 2014).
+/// A small seeded generator of random numbers: SplitMix64 (Steele, Lea, Flood 2014). Its numbers are the same on every
+/// machine.
+///
+/// Parallel work takes a cheap stream per chunk or per item (random.stream(i)) and shares no state. The numbers then do
+/// not depend on the number of threads.
 
 #include <cmath>
 #include <cstdint>
@@ -14,7 +17,7 @@ class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
 
-    /// An independent generator for item `index`; does not advance this one.
+    /// An independent generator for item `index`. Does not advance this generator.
     Random stream(std::uint64_t index) const {
         Random child(state_ ^ mix(index + 0x9e3779b97f4a7c15u));
         return Random(child.next());
@@ -28,7 +31,7 @@ public:
         __extension__ using Wide = unsigned __int128;
         return static_cast<std::uint64_t>((static_cast<Wide>(next()) * count) >> 64);
     }
-    /// Standard normal (Marsaglia and Bray's polar method, one of the pair).
+    /// A standard normal number by Marsaglia and Bray's polar method. The second number of each pair is discarded.
     double normal() {
         for (;;) {
             const double x = uniform(-1, 1), y = uniform(-1, 1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Medians and quantiles: always one of the values, whatever their number.
+/// Medians and quantiles. The result is always one of the values, never a mean of two values.
 ///
-/// Both reorder the values. Pre: at least one value, none is NaN. Cost: linear.
+/// Both functions reorder the values. Pre: at least one value, none is NaN. Cost: linear.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace scanmill {
 
-/// For an even number of values, the upper of the two in the middle.
+/// The median. For an even number of values, the larger of the two middle values.
 template <class Values>
 double median(Values&& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -18,7 +18,7 @@ double median(Values&& values) {
     return *middle;
 }
 
-/// The least value that at least `share` of the values, from 0 to 1, do not exceed.
+/// The smallest of the values v for which at least the fraction `share`, from 0 to 1, of all values is ≤ v.
 template <class Values>
 double quantile(Values&& values, double share) {
     const double rank = std::max(1.0, std::ceil(share * static_cast<double>(values.size())));

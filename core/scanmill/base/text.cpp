@@ -73,12 +73,12 @@ bool is_too_small(std::string_view number) {
     if (mantissa_end < number.size()) {
         std::string_view digits = number.substr(mantissa_end + 1);
         if (digits.front() == '+') digits.remove_prefix(1);
-        // An exponent beyond the range of an integer decides alone: no text has as many digits.
+        // An exponent that does not fit into 64 bits decides alone: no text has that many digits.
         if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
             return digits.front() == '-';
     }
-    // The value of the first significant digit is about 10^(point - first_digit); the result is hundreds of orders
-// off 1.
+    // The mantissa is about 10^(point - first_digit). This estimate suffices, because numbers outside the range of
+    // double are hundreds of orders of magnitude away from 1.
     return exponent < first_digit - point;
 }
 
@@ -107,7 +107,7 @@ bool parse_number(std::string_view text, double& value) {
     if (rest != end || begin == end) return false;
     if (error == std::errc()) return true;
     if (error != std::errc::result_out_of_range) return false;
-    // Outside the range of double: 0 or infinity, as other readers of numbers do.
+    // A number outside the range of double becomes 0 or infinity, as in other number readers.
     const bool negative = *begin == '-';
     value = is_too_small({begin + (negative ? 1 : 0), end}) ? 0.0 : std::numeric_limits<double>::infinity();
     if (negative) value = -value;
