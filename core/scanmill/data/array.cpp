@@ -26,8 +26,8 @@ void unmap(void* begin, std::size_t bytes) {
     assert(result == 0);
 }
 
-/// A block from the kernel, aligned to a huge page. The heap would keep freed large blocks, split into parts too small
-/// for later ones.
+/// A block from the kernel, aligned to a huge page. The heap would keep large freed blocks and split them into parts
+/// that are too small for later requests.
 void* map_block(std::size_t bytes) {
     const std::size_t size = whole_pages(bytes), mapped = size + huge_page;
     void* const all = ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

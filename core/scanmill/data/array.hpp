@@ -96,7 +96,7 @@ Buffer<T> gather(const Buffer<T>& source, std::span<const u32> rows) {
     return picked;
 }
 
-// Whether AddressSanitizer watches memory in this build. It sees only the heap, so all memory is then taken from there.
+// Whether this build contains AddressSanitizer. It checks only heap memory, so all blocks then come from the heap.
 
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool watched_memory = true;

@@ -36,8 +36,9 @@ void require_supported_range(const BoundingBox& box) {
     int axis = 0;
     const double side = sides.maxCoeff(&axis);
     if (side == 0 || (side >= least_side && !is_too_long(box))) return;
-    throw Error("the scan is {:.3g} of its own unit long, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g}",
-                side, box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
+    throw Error(
+        "the longest side of the scan's box is {:.3g} u, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g} u",
+        side, box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
         .hint(is_too_long(box) ? "remove stray points, or scale the scan" : "scale the scan to a larger unit");
 }
 
@@ -48,9 +49,9 @@ Vec3 distant_origin(const BoundingBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
         if (!(std::abs(middle) > distant_diagonals * diagonal)) continue;
-        // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
-        // numbers this close together has a short mantissa, so no bit is lost.
-        // Not below the normal numbers: a step of 0 would make the origin NaN.
+        // The origin is a multiple of a power of two, `step`, that is at least as large as the last bit of any
+        // coordinate. Coordinates are near the origin, so p - origin has few digits and no bit is lost. The step is a
+        // normal number: a step of 0 would make the origin NaN.
         const double last_bit = std::max(std::ldexp(std::abs(middle), -50), std::numeric_limits<double>::min());
         const double step = power_of_two_from(std::max(diagonal, last_bit));
         origin[axis] = std::round(middle / step) * step;
@@ -70,7 +71,7 @@ bool FiniteBounds::are_within(const BoundingBox& outer) const {
 
 FiniteBounds finite_bounds(std::span<const Vec3> positions) {
     FiniteBounds bounds;
-    Vec3 zero = Vec3::Zero();  // unless some x * 0 is NaN
+    Vec3 zero = Vec3::Zero();  // NaN after a NaN or infinite coordinate
     for (const Vec3& p : positions) {
         bounds.box.add(p);
         zero += p * 0.0;

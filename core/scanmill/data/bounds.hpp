@@ -9,7 +9,7 @@
 
 namespace scanmill {
 
-/// Componentwise bounds of positions; empty() without any.
+/// Componentwise bounds of positions; empty() without positions.
 struct BoundingBox {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
@@ -25,30 +25,31 @@ struct BoundingBox {
 /// The smallest box that contains the finite positions.
 BoundingBox bounding_box(std::span<const Vec3> positions);
 
-/// Sides of a scan's box, in its own unit, for which squares and cubes of all its lengths keep all their digits.
+/// Least and largest side of a scan's box that is supported, in the scan's unit. In this range squares and cubes of all
+/// lengths keep all their digits.
 inline constexpr double least_side = 1e-9, largest_side = 1e9;
 /// Whether a side of the box is longer than largest_side.
 bool is_too_long(const BoundingBox& box);
 /// Throws Error with the box's range if its longest side is above largest_side, or above 0 and below least_side.
-/// Scans are checked once, when they are read; algorithms rely on it.
+/// Every scan is checked once, when it is read; algorithms rely on this check.
 void require_supported_range(const BoundingBox& box);
 
-/// The coordinates of an axis are distant if the box's middle is more than this many diagonals from zero. Nearer,
-/// doubles have bits to spare.
+/// The coordinates along an axis are distant if the middle of the box is more than this many diagonals away from zero.
+/// Doubles have bits to spare for coordinates that are not distant.
 inline constexpr double distant_diagonals = 16;
-/// A good origin for world positions inside `box`: along every axis whose coordinates are distant, a coarse
-/// power-of-two multiple near the middle, else 0. Chosen so that p - origin, and origin + (p - origin), are exact in
-/// double for every p in the box. Zero for a box without points or with an infinite bound.
+/// A good origin for the world positions inside `box`. Along an axis with distant coordinates it is a multiple of a
+/// large power of two near the middle of the box; along other axes it is 0. p - origin and origin + (p - origin) are
+/// exact in double for every p in the box. Zero for a box without points or with an infinite bound.
 Vec3 distant_origin(const BoundingBox& box);
 
 struct FiniteBounds {
-    /// Unspecified unless all are finite; empty without positions.
+    /// The bounds of the positions; empty without positions. Unspecified if a coordinate is not finite.
     BoundingBox box;
     bool finite = true;
 
     /// Extends the bounds to those of more positions.
     void add(const FiniteBounds& more);
-    /// Whether all are finite and in the box.
+    /// Whether all positions are finite and inside `outer`.
     bool are_within(const BoundingBox& outer) const;
 };
 

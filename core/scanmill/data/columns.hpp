@@ -4,8 +4,8 @@
 ///
 /// A Column is #rows × components numbers of one scalar type, or #rows lists of varying length. Well-known names:
 /// `normal` (3 × float32 or float64, unit length), `colour` (3 or 4 × uint8, red green blue alpha), `weight` (1).
-/// Other columns keep the name and type of their file. Columns are values: copying shares the memory, gather() creates
-/// a new one.
+/// Other columns keep the name and type of their file. Columns are values: copies share memory, gather() allocates new
+/// memory.
 
 #include <array>
 #include <optional>
@@ -73,8 +73,8 @@ public:
     /// Numbers per row; 0 for lists.
     u32 components() const { return components_; }
     std::size_t rows() const { return rows_; }
-    /// How numbers change with the unit: 1 for lengths in the frame's unit, -1 for numbers per length (curvatures),
-    /// else 0.
+    /// The power of the length unit in the numbers: 1 for lengths in the frame's unit, -1 for numbers per length
+    /// (curvatures), else 0.
     int length_exponent() const { return length_exponent_; }
     const Buffer<u64>& offsets() const { return offsets_; }
     const Buffer<std::byte>& bytes() const { return data_; }
@@ -85,13 +85,14 @@ public:
         require_type(scalar_type_of<T>());
         return {reinterpret_cast<const T*>(data_.data()), data_.size() / sizeof(T)};
     }
-    /// One number, converted; 64-bit integers beyond 2^53 round. Pre: not a list.
+    /// One number as a double; 64-bit integers beyond 2^53 are rounded. Pre: not a list.
     double number(std::size_t row, u32 component = 0) const;
 
     Column gather(std::span<const u32> rows) const;
     Column renamed(std::string name) const;
     Column with_length_exponent(int exponent) const;
-    /// Converted to a unit that is `factor` times as small: numbers become float64 unless the exponent is 0.
+    /// The column in a unit that is `factor` times as small. Lengths are multiplied and numbers per length divided by
+    /// `factor`; the results are float64. Columns with length exponent 0 remain unchanged.
     Column scaled(double factor) const;
     bool operator==(const Column& other) const;
 
@@ -111,14 +112,14 @@ private:
     Buffer<u64> offsets_;
 };
 
-/// Columns of one element (points, faces …), in file order, names unique.
+/// Columns of one kind of element (points, faces …), in file order. Names are unique.
 class ColumnTable {
 public:
     /// Throws Error if the name is taken or the number of rows differs from the table's.
     void add(Column column);
     const Column* find(std::string_view name) const;
     ColumnTable gather(std::span<const u32> rows) const;
-    /// Every column by Column::scaled().
+    /// Applies Column::scaled() to every column.
     ColumnTable scaled(double factor) const;
 
     auto begin() const { return columns_.begin(); }

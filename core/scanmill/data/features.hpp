@@ -31,8 +31,8 @@ struct FeatureGraph {
     std::vector<FeaturePolyline> polylines;
     /// Indices into positions, polyline after polyline.
     Buffer<u32> vertices;
-    /// One row per entry of `vertices`: the unit normals left and right of the segment that starts there; zero if there
-    /// is no surface (beyond a boundary) or no segment (the last vertex of an open polyline).
+    /// One row per entry of `vertices`: the unit normals left and right of the segment that starts at this vertex. Zero
+    /// beyond a boundary, where no surface is, and at the last vertex of an open polyline, where no segment starts.
     Buffer<Vec3> left_normals, right_normals;
     /// Indices into positions, ascending.
     Buffer<u32> corners;

@@ -15,7 +15,7 @@ struct UnitRow {
     std::string_view symbol;
     std::int64_t micrometres;  // integers, so that ratios of units are exact
 };
-/// By LengthUnit.
+/// Indexed by LengthUnit.
 constexpr std::array<UnitRow, 7> units{
     {{"u", 0}, {"um", 1}, {"mm", 1'000}, {"cm", 10'000}, {"m", 1'000'000}, {"in", 25'400}, {"ft", 304'800}}};
 
@@ -43,7 +43,7 @@ double in_unit(double length, LengthUnit from, LengthUnit to) {
 void require_same_frame(const Frame& first, std::string_view one, const Frame& second, std::string_view other) {
     if (first.unit != second.unit)
         throw Error("{} in {}, {} in {}; both need one unit", one, symbol(first.unit), other, symbol(second.unit))
-            .hint("convert one of them with `scanmill convert` (u: a unit that is not declared)");
+            .hint("convert one of them with `scanmill convert`; u means that the unit is not declared");
     if (!first.name.empty() && !second.name.empty() && first.name != second.name)
         throw Error("{} in the frame '{}', {} in '{}'; both need one frame", one, first.name, other, second.name)
             .hint("move one of them into the other's frame, or give both files one frame name")

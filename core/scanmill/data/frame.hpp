@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The frame of a geometric value: the unit of its numbers, the origin they are relative to, and the name of the
+/// The frame of a geometric value: the unit of its numbers, the origin that they are relative to, and the name of the
 /// coordinate system.
 ///
 /// The world position of a position p is frame.origin + p. Readers choose an origin for which the subtraction is exact
-/// (distant_origin() in bounds.hpp), the engine moves the inputs of a step to one origin, writers add it back:
-/// coordinates of 10^6 m keep their micrometres.
+/// (distant_origin() in bounds.hpp). The engine moves the inputs of a step to one origin. Writers add the origin back.
+/// Coordinates of 10^6 m thereby keep their micrometres.
 
 #include <Eigen/Core>
 #include <optional>
@@ -35,14 +35,14 @@ struct Frame {
 
     bool operator==(const Frame&) const = default;
 };
-/// Without the origin: JSON has world coordinates.
+/// The origin is not among the fields, because JSON contains world coordinates.
 constexpr auto fields(const Frame*) {
     return std::tuple{field("unit", &Frame::unit).nullable(),
-                      field("frame", &Frame::name, "The name of the coordinate system; null: it has none.").nullable()};
+                      field("frame", &Frame::name, "The name of the coordinate system; null if none.").nullable()};
 }
 
-/// Throws Error if the units differ, or the names if both have one. `one` and `other` are what the user calls the
-/// values, in the singular or plural: "the plan is", "the mesh". Origins may differ.
+/// Throws Error if the units differ, or if both frames have names and the names differ. Origins may differ. `one` and
+/// `other` name the values in the message, `one` with its verb: "the plan is", "the mesh".
 void require_same_frame(const Frame& first, std::string_view one, const Frame& second, std::string_view other);
 
 }  // namespace scanmill

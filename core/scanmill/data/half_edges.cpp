@@ -15,7 +15,7 @@ std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
     return fmt::format("vertex {} ({:.9g}, {:.9g}, {:.9g})", vertex, world.x(), world.y(), world.z());
 }
 
-/// Edges that are not allowed: the half-edges of the first one, and the number of such edges.
+/// Edges that are not allowed: the half-edges of the first such edge, and the number of such edges.
 struct Offenders {
     std::vector<VertexHalfEdge> first;
     std::size_t edges = 0;
@@ -77,12 +77,12 @@ Array<u32> opposites(const TriangleMesh& mesh) {
     });
     if (crowded.edges > 0)
         throw Error(
-            "{} is in {} triangles, {}, {} and {} among them; a surface has at most 2 at an edge (edges with more: {})",
+            "{} is in {} triangles, among them {}, {} and {}; an edge of a surface is in at most 2 (edges in more: {})",
             crowded.edge_text(mesh), crowded.first.size(), crowded.first[0].number / 3, crowded.first[1].number / 3,
             crowded.first[2].number / 3, crowded.edges)
             .hint(
-                "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its "
-                "own vertices; or mesh its points again")
+                "remove triangles until every edge is in at most two, or cut the mesh at these edges by giving each "
+                "sheet its own vertices, or mesh the points again")
             .remedy(Remedy::mesh_points);
     if (alike.edges > 0)
         throw Error(

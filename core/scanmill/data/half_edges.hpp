@@ -28,8 +28,8 @@ struct VertexHalfEdge {
 
 /// Half-edges grouped by the smaller vertex of their edges.
 struct ByVertex {
-    std::vector<u32> begin;  ///< start of every vertex's group, and one more
-    std::vector<VertexHalfEdge> half_edges;  ///< within a group by edge, then by number
+    std::vector<u32> begin;  ///< the first half-edge of every vertex's group; at the end, the number of half-edges
+    std::vector<VertexHalfEdge> half_edges;  ///< every group is sorted by edge, then by number
 };
 
 /// Cost: linear where no vertex has many edges, 24 bytes per triangle and 8 per vertex.
@@ -46,14 +46,16 @@ void for_each_edge(const ByVertex& by_vertex, Action&& action) {
         }
 }
 
-/// Values of an opposite: `boundary`: on the boundary; `no_half_edge`: in a triangle with a repeated vertex.
+/// Values instead of an opposite half-edge: `boundary` if the edge is on the boundary, `no_half_edge` if the triangle
+/// has a repeated vertex.
 inline constexpr u32 boundary = ~u32(0), no_half_edge = ~u32(0) - 1;
 
 /// The opposite of every half-edge, or `boundary`, or `no_half_edge`.
 ///
-/// Throws Error for an index out of range, for more half-edges than 32 bits can number, for an edge in three or more
-/// triangles and for an edge with two half-edges of the same direction: naming the first such edge (lowest vertices),
-/// its position and the number of such edges. Cost: as above, and 12 bytes per triangle.
+/// Throws Error for an index out of range and for more half-edges than 32 bits can number. Throws Error for an edge in
+/// three or more triangles and for an edge with two half-edges of the same direction. The message contains the first
+/// such edge (lowest vertices), its position and the number of such edges. Cost: that of by_smaller_vertex(), and 12
+/// bytes per triangle.
 Array<u32> opposites(const TriangleMesh& mesh);
 
 }  // namespace scanmill::half_edges

@@ -30,7 +30,8 @@ void require_in_range(const Buffer<Simplex>& simplices, std::size_t vertices, st
 
 constexpr u32 removed = ~u32(0);
 
-/// The simplices whose vertices all remain, renumbered, and their columns (if any).
+/// The simplices whose vertices all remain, with the new indices of their vertices. `columns`, if not null, keeps only
+/// the rows of these simplices.
 template <class Simplex>
 Buffer<Simplex> renumbered(const Buffer<Simplex>& simplices, const Array<u32>& new_index, ColumnTable* columns) {
     Array<Simplex> result;
@@ -48,7 +49,7 @@ Buffer<Simplex> renumbered(const Buffer<Simplex>& simplices, const Array<u32>& n
     return result;
 }
 
-/// The mesh with these vertices alone. Pre: `vertices` ascend.
+/// The mesh without all other vertices and the simplices at them. Pre: `vertices` ascend.
 TriangleMesh with_vertices(TriangleMesh mesh, const Array<u32>& vertices) {
     Array<u32> new_index(mesh.positions.size(), removed);
     for (u32 i = 0; i < vertices.size(); ++i) new_index[vertices[i]] = i;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// `mesh`: an indexed triangle mesh. It need not be a manifold: geometry/mesh/topology.hpp computes what it is.
+/// `mesh`: an indexed triangle mesh. It need not be a manifold; topology() checks whether it is.
 
 #include <array>
 
@@ -43,15 +43,15 @@ constexpr auto fields(const TriangleMesh*) {
 /// Throws Error if an index is out of range or a column has a wrong number of rows.
 void require_consistent(const TriangleMesh& mesh);
 
-/// The mesh without the vertices that are in no triangle, and without edges and sharp edges at such vertices; all
-/// columns, vertices in order.
+/// The mesh without the vertices that are in no triangle, and without edges and sharp edges at such vertices. All
+/// columns remain; vertices keep their order.
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh);
 
 /// The mesh's vertices with their columns and frame, in order; shares their memory.
 PointCloud points_of(const TriangleMesh& mesh);
 
 /// The mesh without vertices that have a NaN or infinite coordinate, and without triangles, edges and sharp edges at
-/// such vertices; all columns, in order. Unused vertices remain.
+/// such vertices. All columns and the order remain, and so do unused vertices.
 Cleaned<TriangleMesh> without_invalid_points(const TriangleMesh& mesh);
 
 /// The box of the finite vertices that are in a triangle; empty without triangles.

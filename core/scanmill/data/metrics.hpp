@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 9> names_of(const Unit*) {
     return {"count", "length", "area", "volume", "angle", "ratio", "seconds", "number", "boolean"};
 }
 
-/// Which of two values of a metric is the better one; `neither` also for those that only should not change.
+/// Which of two values of a metric is better. `neither` includes metrics that should merely not change.
 enum class Better { neither, larger, smaller };
 constexpr std::array<std::string_view, 3> names_of(const Better*) { return {"neither", "larger", "smaller"}; }
 
@@ -44,7 +44,7 @@ struct Metrics {
     const Metric* find(std::string_view name) const;
 };
 constexpr auto fields(const Metrics*) {
-    return std::tuple{field("values", &Metrics::values), field("unit", &Metrics::unit, "Of lengths.")};
+    return std::tuple{field("values", &Metrics::values), field("unit", &Metrics::unit, "The unit of lengths.")};
 }
 
 /// "3000", "0.0125", "yes": a metric's number for people; angles in degrees, ratios in percent.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A point file that is read piece by piece, as often as needed, for code that visits every point and keeps few: the
+/// A point file that is read piece by piece, as often as needed. For code that visits every point and keeps few; the
 /// scan is never in memory as a whole.
 ///
 /// Frame, positions and columns equal those of read_points(), bit for bit. open_point_stream() decides which files can
@@ -27,9 +27,11 @@ public:
     const Frame& frame() const { return frame_; }
     /// The box of all points, relative to frame().origin.
     const BoundingBox& bounds() const { return box_.all; }
-    /// The same, and without stray points; equals robust_box() of the positions.
+    /// The box of all points and the box without stray points, relative to frame().origin. Equals robust_box() of the
+    /// positions.
     const RobustBox& robust_box() const { return box_; }
-    /// The first point of every piece, and the number of points. A piece has at most 2^16 points and may be empty.
+    /// The index of the first point of every piece; at the end, the number of points. A piece has at most 2^16 points
+    /// and may be empty.
     const std::vector<std::size_t>& pieces() const { return pieces_; }
     std::size_t size() const { return pieces_.back(); }
 
@@ -38,17 +40,18 @@ public:
     void read(std::size_t piece, Array<Vec3>& positions) const;
     /// All columns of a piece, without the positions. Callable from several threads. Cost: one pass over the piece.
     virtual ColumnTable read_columns(std::size_t piece) const = 0;
-    /// These points with all their columns. Pre: `rows` ascending. Throws Error as read().
+    /// The points at `rows` with all their columns. Pre: `rows` ascend. Throws Error under the conditions of read().
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
 
-    /// Sets another frame name than that of the file.
+    /// Replaces the frame name of the file.
     void rename_frame(std::string name) { frame_.name = std::move(name); }
 
 protected:
     PointStream() = default;
-    /// Throws the Error of a file that changed.
+    /// Throws the Error for a file that has changed.
     [[noreturn]] static void throw_changed();
-    /// Reads the world positions of a piece, as far as the file now has them; returns their bounds.
+    /// Reads the world positions of a piece and returns their bounds. Reads a different number of positions if the file
+    /// has changed.
     virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& positions) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
     /// Sets the frame's origin as readers do, and the boxes relative to it. Pre: world_ bounds all pieces.

@@ -21,7 +21,7 @@ double squared_distance(const Vec3& a, const Vec3& b) {
     const double x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
     return (x * x + y * y) + z * z;
 }
-/// Squared distance of two boxes. Subtraction, squaring and addition are monotone when rounded to nearest, so
+/// Squared distance between two boxes. Subtraction, squaring and addition are monotone when rounded to nearest, so
 /// the computed distance to a box never exceeds the computed distance to a point in it.
 double squared_distance(const BoundingBox& a, const BoundingBox& b) {
     double gap[3];
@@ -43,7 +43,7 @@ public:
     };
 
     KdTree(std::span<const Vec3> positions, unsigned threads) : points_(positions.size()) {
-        // Smaller leaves cost more boxes, larger ones more distances to points that are too far.
+        // Smaller leaves need more boxes. Larger leaves need more distances to points that are too far away.
         constexpr std::size_t most_in_leaf = 8;
         constexpr std::size_t chunk = 1 << 12;
         assert(!positions.empty() && positions.size() <= ~u32(0));
@@ -56,7 +56,7 @@ public:
                 for (u64 node = first + begin; node < first + end; ++node) action(node);
             });
         };
-        // Every level computes its boxes from the points: it costs less than the selection beside it.
+        // Every level computes its boxes from the points. This costs less than the selection on the same level.
         for (u64 first = 1; first < leaves(); first *= 2) for_level(first, [&](u64 node) { bound(node), split(node); });
         for_level(leaves(), [&](u64 node) { bound(node); });
     }
@@ -72,7 +72,8 @@ public:
     /// The leaf that contains points()[slot].
     u64 leaf_of(std::size_t slot) const { return leaves() + (((u64(slot) + 1) << depth_) - 1) / points_.size(); }
 
-    /// The leaf that is reached by going to the child whose box is nearer to `point`, or to the left one.
+    /// The leaf reached by moving, at every node, to the child whose box is nearer to `point`. The left child wins
+    /// ties.
     u64 leaf_near(const Vec3& point) const {
         const BoundingBox at{point, point};
         u64 node = 1;
@@ -81,13 +82,14 @@ public:
         return node;
     }
 
-    /// The smallest node around `node` with at least `count` points; the root if there are fewer.
+    /// The lowest node that contains `node` and at least `count` points; the root if no node has so many points.
     u64 ancestor_with(std::size_t count, u64 node) const {
         while (node > 1 && points_of(node).size() < count) node /= 2;
         return node;
     }
 
-    /// Calls action(points of a leaf) for all leaves whose box is at a squared distance of at most `squared`.
+    /// Calls action(points of a leaf) for every leaf whose box is at most at the squared distance `squared` from
+    /// `from`.
     template <class Action>
     void near(const BoundingBox& from, double squared, Action&& action) const {
         u64 node = 1;
@@ -106,7 +108,7 @@ public:
     }
 
 private:
-    /// The first point of the node that is `later` nodes after this one on its level.
+    /// The slot of the first point of a node: of the node `later` nodes after `node` on the same level.
     std::size_t begin_of(u64 node, u64 later) const {
         const int level = static_cast<int>(std::bit_width(node)) - 1;
         return (node - (u64(1) << level) + later) * points_.size() >> level;
@@ -140,14 +142,14 @@ struct ComesBefore {
     }
 };
 
-/// Finds all points within a radius that contains enough of them, then the nearest of these.
+/// Finds all points within a radius that contains enough points, then chooses the nearest of these points.
 ///
-/// The points of a leaf are searched together, with the radius that the leaf before them needed. A radius needs no
-/// proof, only a count: the few points around which the count falls short are searched again, with the distance of the
-/// (count + 1)-th point in a node around them.
+/// The points of a leaf are searched together, with a radius derived from the one that the previous leaf needed.
+/// Counting shows whether the radius was large enough for a point. The few points with too few neighbours are searched
+/// again; their radius is the distance of the (count + 1)-th point in a node around them.
 class NeighbourSearch {
 public:
-    /// Pre: 1 ≤ count < number of points; at most that number for nearest_to().
+    /// Pre: 1 ≤ count < number of points. For nearest_to(), count may equal the number of points.
     NeighbourSearch(const KdTree& tree, std::size_t count, NeighbourBuffer& buffer)
         : tree_(tree),
           count_(count),
@@ -176,7 +178,7 @@ public:
         const double squared = radius_for_leaf(leaf);
         collect(tree_.box(leaf), squared);
         double needed = 0;
-        u64 failed = 0;  // a bit for each point
+        u64 failed = 0;  // one bit for each point
         assert(points.size() <= 64);
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (choose(points[i], squared, out + i * count_))
@@ -198,15 +200,15 @@ private:
 
     /// The square of a radius that contains enough points around every point of the leaf, or around most of them.
     double radius_for_leaf(u64 leaf) {
-        constexpr double widening = 1.25;  // wider costs candidates, narrower second searches
+        constexpr double widening = 1.25;  // more widening: more candidates; less: more second searches
         const BoundingBox& box = tree_.box(leaf);
-        // From the middle of the box to count + 1 points, and from every point to the middle.
+        // The distance from the middle of the box to the (count + 1)-th point, plus half the diagonal of the box.
         const double around =
             std::sqrt(enough_around((box.low + box.high) / 2, leaf, count_ + 1)) + (box.high - box.low).norm() / 2;
         return std::min(around * around, last_squared_ * widening);
     }
 
-    /// A squared radius around `position` that contains at least `count` points, one at `position` included.
+    /// A squared radius around `position` that contains at least `count` points, including a point at `position`.
     double enough_around(const Vec3& position, u64 leaf, std::size_t count) {
         const std::span<const KdTree::Point> points = tree_.points_of(tree_.ancestor_with(count, leaf));
         if (points.size() > buffer_.x.size()) buffer_.reserve(2 * points.size());
@@ -217,7 +219,7 @@ private:
         return *last;
     }
 
-    /// Makes candidates of the points whose squared distance to the box is at most `squared`.
+    /// Collects the points whose squared distance to the box is at most `squared`. These are the candidates.
     void collect(const BoundingBox& box, double squared) {
         std::size_t size = 0;
         tree_.near(box, squared, [&](std::span<const KdTree::Point> points) {
@@ -227,14 +229,15 @@ private:
                 buffer_.y[size] = point.position.y();
                 buffer_.z[size] = point.position.z();
                 buffer_.indices[size] = point.index;
-                // No branch: it could not be predicted.
+                // No branch, because the processor could not predict it.
                 size += squared_distance(box, BoundingBox{point.position, point.position}) <= squared;
             }
         });
         buffer_.candidates = size;
     }
 
-    /// False if fewer than count other candidates are within. Pre: all points within are candidates.
+    /// Writes the #count nearest candidates other than `from` to `out`. Returns false if fewer of them are within the
+    /// squared radius `squared`. Pre: all points within this radius are candidates.
     bool choose(const KdTree::Point& from, double squared, Neighbour* out) {
         const std::size_t size = buffer_.candidates;
         for (std::size_t i = 0; i < size; ++i) {
@@ -252,8 +255,8 @@ private:
         return true;
     }
 
-    /// Writes the #count nearest of the found ones to `out`, in order. On a surface squared distances are spread
-    /// evenly, so a bucket sort nearly sorts them; an insertion sort finishes.
+    /// Writes the #count nearest of `found` to `out`, in order. On a surface, squared distances are spread evenly, so a
+    /// bucket sort almost sorts them. An insertion sort does the rest.
     void choose_sorted(std::span<Neighbour> found, double squared, Neighbour* out) {
         constexpr u32 last_bucket = 63, most_in_bucket = 12;
         const double buckets_per_square = last_bucket / squared;
@@ -299,7 +302,7 @@ struct Row {
     u32 row;
 };
 
-/// The rows in ascending order of their positions, equal ones by row.
+/// The rows in ascending order of their positions. Rows with equal positions ascend by row.
 Array<Row> sorted_rows(std::span<const Vec3> positions, unsigned threads) {
     Array<Row> rows(positions.size());
     for (u32 row = 0; row < positions.size(); ++row) rows[row] = {positions[row].x(), row};
@@ -346,7 +349,7 @@ struct PointTree::Tree {
     Array<u32> index_of_row;
     Array<Vec3> positions;
     KdTree boxes;
-    /// In boxes.points().
+    /// For every index in `positions`, the slot in boxes.points().
     Array<u32> slot_of_index;
 };
 
@@ -373,7 +376,7 @@ std::span<const Neighbour> PointTree::nearest_to(const Vec3& point, std::size_t 
 
 void PointTree::for_each_nearest(std::size_t count, unsigned threads,
                                  const std::function<void(const NeighbourBatch&)>& action) const {
-    // The results of a batch should stay in a processor's own cache; the searches of a chunk share their memory.
+    // The results of a batch should fit into the cache of a processor core. The searches of a chunk share a buffer.
     constexpr u64 leaves_per_batch = 32, leaves_per_chunk = 512;
     const KdTree& boxes = tree_->boxes;
     const std::size_t each = std::min(count, tree_->positions.size() - 1);

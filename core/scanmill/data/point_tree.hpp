@@ -15,14 +15,15 @@
 
 namespace scanmill {
 
-/// Another position, seen from a position. Neighbours ascend by squared distance, equally far ones by index.
+/// A position near another one: its squared distance and its index. Neighbours are sorted by squared distance; the
+/// lower index wins ties.
 struct Neighbour {
     double squared;
     u32 index;
     bool operator==(const Neighbour&) const = default;
 };
 
-/// The neighbours of some hundred positions that lie side by side.
+/// The neighbours of some hundred positions that are close together.
 struct NeighbourBatch {
     std::span<const u32> indices;
     /// The neighbours of indices[i] are [i * each, (i + 1) * each).
@@ -35,7 +36,7 @@ struct NeighbourBatch {
 /// Reusable memory of a search; each thread needs its own.
 struct NeighbourBuffer {
     Array<Neighbour> neighbours;
-    /// Candidates within a radius. Coordinates are separate arrays so that distances vectorise.
+    /// Candidates within a radius. Coordinates are in separate arrays so that the distances are computed in vectors.
     Array<double> x, y, z, squares;
     Array<u32> indices, buckets;
     Array<Neighbour> found, sorted;
@@ -51,19 +52,22 @@ public:
 
     /// The distinct positions, ascending by x, then y, then z.
     std::span<const Vec3> positions() const;
-    /// The index in positions() of every row of the input.
+    /// For every row of the input, the index of its position in positions().
     std::span<const u32> index_of_row() const;
 
     /// The `count` nearest of the other positions, or all of them if there are fewer. The result is in `buffer` and is
-    /// valid until the next search. Safe from several threads, as are the functions below.
+    /// valid until the next search with this buffer. This function and the functions below are safe to call from
+    /// several threads.
     std::span<const Neighbour> nearest(u32 index, std::size_t count, NeighbourBuffer& buffer) const;
-    /// The `count` positions nearest to any finite point, or all of them if there are fewer; one at the point counts.
+    /// The `count` positions nearest to any finite point, or all positions if there are fewer. A position equal to
+    /// `point` is included.
     std::span<const Neighbour> nearest_to(const Vec3& point, std::size_t count, NeighbourBuffer& buffer) const;
-    /// As nearest() for every position; several times as fast as one call each. `action` is called from up to `threads`
-    /// threads and in any order; which positions share a batch depends on the positions alone.
+    /// Computes nearest() for every position, several times as fast as one call each. Calls `action` from up to
+    /// `threads` threads and in any order. Which positions share a batch depends on the positions alone.
     void for_each_nearest(std::size_t count, unsigned threads,
                           const std::function<void(const NeighbourBatch& batch)>& action) const;
-    /// The other positions at a squared distance below `squared`, in the order of neighbours. Result as by nearest().
+    /// The other positions at a squared distance below `squared`, in the order of neighbours. The result is in
+    /// `buffer`, as for nearest().
     std::span<const Neighbour> within(u32 index, double squared, NeighbourBuffer& buffer) const;
 
 private:

@@ -46,7 +46,7 @@ Array<u32> finite_rows(std::span<const Vec3> positions) {
 
 namespace {
 
-/// Farther from the median than this along an axis, a row is invalid in a scan that is too long.
+/// In a scan that is too long, a row is invalid if it is farther than this from the median along an axis.
 constexpr double farthest = largest_side / 2;
 
 /// The lower median along every axis. Pre: at least one position is finite.
@@ -64,21 +64,22 @@ Vec3 median_of(std::span<const Vec3> positions) {
 
 bool is_near(const Vec3& position, const Vec3& median) { return ((position - median).array().abs() <= farthest).all(); }
 
-/// Throws Error for a scan with invalid rows, all of them finite.
+/// Throws Error with the number of invalid rows and the first of them. Pre: all rows are finite; at least one is
+/// invalid.
 [[noreturn]] void refuse_far_rows(const PointCloud& cloud, std::span<const u32> valid) {
     u32 first = 0;
     while (first < valid.size() && valid[first] == first) ++first;
     const Vec3 world = cloud.positions[first] + cloud.frame.origin;
     throw Error(
         "{} of {} points {} farther than {:g} u from the median of all, the first is number {} at ({}, {}, {}); "
-        "at most {:g} u may lie between two points",
+        "two points may be at most {:g} u apart",
         cloud.size() - valid.size(), cloud.size(), by_count(cloud.size() - valid.size(), "lies", "lie"), farthest,
         first, number_text(world.x()), number_text(world.y()), number_text(world.z()), largest_side)
         .hint("remove them from the file")
         .remedy(Remedy::drop_invalid_rows);
 }
 
-/// Throws Error for a scan that is too long because of many rows, not of a few invalid ones.
+/// Throws Error for a scan that is too long because of many far rows rather than a few stray rows.
 void refuse_length(const BoundingBox& box, std::size_t far, std::size_t finite) {
     try {
         require_supported_range(box);

@@ -12,8 +12,8 @@ namespace scanmill {
 
 struct PointCloud {
     Frame frame;
-    /// #points, relative to frame.origin. May contain NaN or infinity as read; a scan that enters a workflow has only
-    /// valid rows (see valid_rows()).
+    /// #points, relative to frame.origin. May contain NaN or infinity after reading; a scan that enters a workflow has
+    /// only valid rows (see valid_rows()).
     Buffer<Vec3> positions;
     /// Every column has #points rows.
     ColumnTable columns;
@@ -36,21 +36,23 @@ void require_finite(std::span<const Vec3> positions, std::string_view what = "po
 /// The rows of the positions whose three coordinates are finite, ascending.
 Array<u32> finite_rows(std::span<const Vec3> positions);
 
-/// The rows that a scan may have, ascending: those with three finite coordinates and, if the box of these has a side
-/// longer than largest_side, within half of largest_side of the median along every axis. So the box of the valid rows
-/// is not too long. Throws Error with the number of far rows if at most half of the finite rows are near the median:
-/// the scan itself is too long. Cost: one pass; a selection per axis if the box is too long.
+/// The valid rows, ascending. A valid row has three finite coordinates. If the box of the finite rows has a side longer
+/// than largest_side, a valid row is also within half of largest_side of the median along every axis. The box of the
+/// valid rows is therefore not too long.
+///
+/// Throws Error with the number of far rows if at most half of the finite rows are near the median, because the scan
+/// itself is then too long. Cost: one pass; if the box is too long, also one selection per axis.
 Array<u32> valid_rows(std::span<const Vec3> positions);
 
-/// What happens to invalid rows where a scan enters.
+/// What happens to the invalid rows of a scan when it enters a workflow.
 enum class InvalidRows {
-    by_format,  ///< dropped where the file's format writes NaN for a ray without a return, else refused
+    by_format,  ///< drop if the file's format writes NaN for a ray without a return, else refuse
     refuse,
     drop
 };
 /// "refuse" and "drop"; empty for by_format.
 std::string_view name_of(InvalidRows rule);
-/// nullopt for texts other than "refuse" and "drop".
+/// The rule with this name; nullopt for texts other than "refuse" and "drop".
 std::optional<InvalidRows> invalid_rows_named(std::string_view name);
 
 template <class Geometry>
@@ -64,8 +66,8 @@ struct Cleaned {
 Cleaned<PointCloud> without_invalid_points(const PointCloud& cloud);
 
 /// The scan if all its rows are valid; else without_invalid_points() or an Error with the number of invalid rows and
-/// the first of them. `nan_is_no_return`: of the file's format. Throws Error also for a scan outside the
-/// supported range (see require_supported_range()).
+/// the first of them. Throws Error also for a scan outside the supported range (see require_supported_range()).
+/// `nan_is_no_return`: whether the file's format writes NaN for a ray without a return.
 Cleaned<PointCloud> accepted(const PointCloud& cloud, InvalidRows rule, bool nan_is_no_return);
 
 /// Adds `shift` to every position.

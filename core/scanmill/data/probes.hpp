@@ -2,10 +2,10 @@
 #pragma once
 /// `probes`: where and from which direction a touch probe touches the edges of a part, after Wang 2006, chapter 5.
 ///
-/// A touch has a reference point T near a true edge. The centre of the probe's ball moves along -u from `start`,
-/// through T + s u for falling s, until the ball meets the part: at T + r u, were T on the edge. Directions are
-/// measured in the plane perpendicular to the tangent e of the edge: phi = 0 is the bisector n0 of the normals n1 (left
-/// of e) and n2 (right of e), and u = cos phi n0 - sin phi (e x n0), so a positive phi leans towards n1.
+/// A touch has a reference point T near a true edge. The centre of the probe's ball moves from `start` along -u,
+/// through T + s u with decreasing s, until the ball meets the part. If T is on the edge, the centre is then at
+/// T + r u. The direction u is in the plane perpendicular to the tangent e of the edge. Let n0 be the bisector of the
+/// normals n1 (left of e) and n2 (right of e). Then u = cos phi n0 - sin phi (e x n0): a positive phi leans towards n1.
 
 #include <limits>
 #include <string_view>
@@ -20,9 +20,9 @@ namespace scanmill {
 enum class ProbeReason : u8 {
     none,
     concave,  ///< the interior angle is pi or more
-    too_narrow,  ///< no direction meets the edge first for every position of T, or the ball does not pass the hole
-    too_tilted,  ///< every such direction is farther from the machine's axis than allowed
-    obstructed  ///< ball or stylus would meet the part elsewhere, or the start cannot be left along the axis
+    too_narrow,  ///< no direction meets the edge first for all tolerated T, or the ball does not pass the hole
+    too_tilted,  ///< every direction that meets the edge first deviates too far from the machine's axis
+    obstructed  ///< ball or stylus would meet the part elsewhere, or cannot leave the start along the axis
 };
 constexpr std::array<std::string_view, 5> names_of(const ProbeReason*) {
     return {"none", "concave", "too-narrow", "too-tilted", "obstructed"};
@@ -32,8 +32,8 @@ constexpr std::array<std::string_view, 5> names_of(const ProbeReason*) {
 enum class ProbeContact : u8 {
     none,  ///< not simulated: the touch is not made
     edge,  ///< the part, near T
-    elsewhere,  ///< the part is met too far from T, or by the stylus
-    missed  ///< nothing
+    elsewhere,  ///< the part, too far from T; or the stylus meets the part first
+    missed  ///< the ball does not meet the part
 };
 constexpr std::array<std::string_view, 4> names_of(const ProbeContact*) {
     return {"none", "edge", "elsewhere", "missed"};
@@ -43,7 +43,7 @@ struct ProbeTouch {
     static constexpr u32 no_order = ~u32(0);
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-    u32 touch = 0;  ///< number of the reference point, from 0; two touches of one point have the same
+    u32 touch = 0;  ///< number of the reference point, from 0; two touches of one point share it
     u32 feature = 0;  ///< row of the polyline among the features, from 0
     /// T, relative to frame.origin.
     Vec3 position = Vec3::Zero();
@@ -53,10 +53,10 @@ struct ProbeTouch {
     double interior_angle = nan;
     /// Whether n2 is not known, but assumed to be perpendicular to n1.
     bool assumed = false;
-    /// The directions that meet the edge first, for T anywhere within the scanner's error of the edge, in radians. NaN
-    /// where no direction is admissible, or none was sought.
+    /// The range of directions that meet the edge first, in radians, for every T within the scanner's error of the
+    /// edge. NaN if no direction is admissible or none was searched for.
     double phi_min = nan, phi_max = nan;
-    /// The same for T on the left face, sought where `assumed`.
+    /// The range of directions for T on the left face, in radians. Searched for only if `assumed`, else NaN.
     double phi_known_min = nan, phi_known_max = nan;
     /// The direction that is used, in radians; NaN if there is none.
     double phi = nan;
@@ -70,7 +70,7 @@ struct ProbeTouch {
     /// The share of the tried positions of T for which a face is met before the edge; NaN if the touch is not made.
     double false_share = nan;
     ProbeContact contact = ProbeContact::none;
-    /// From T to the point of the mesh that the ball meets first; NaN without one.
+    /// The distance from T to the point of the mesh that the ball meets first; NaN if the ball meets no point.
     double contact_distance = nan;
     /// Position in the order of touches, from 0; no_order if the touch is not made.
     u32 order = no_order;
@@ -82,31 +82,40 @@ constexpr auto fields(const ProbeTouch*) {
     constexpr auto is_made = [](const T& touch) { return touch.is_made(); };
     return std::tuple{
         field("touch", &T::touch, "The number of the reference point."),
-        field("feature", &T::feature, "The line that it measures."),
+        field("feature", &T::feature, "The line that the touch measures."),
         field("point", &T::position, "The reference point, in world coordinates.").means(Meaning::position),
         field("tangent", &T::tangent).means(Meaning::direction),
         field("left-normal", &T::left_normal).means(Meaning::direction),
         field("right-normal", &T::right_normal).means(Meaning::direction),
-        field("interior-angle", &T::interior_angle, "Between the faces; null: not defined.").unit("rad").nullable(),
+        field("interior-angle", &T::interior_angle, "The angle between the faces; null if not defined.")
+            .unit("rad")
+            .nullable(),
         field("assumed", &T::assumed, "Whether the right normal is an assumption."),
-        field("phi-min", &T::phi_min, "Of the admissible directions; null: there is none.").unit("rad").nullable(),
+        field("phi-min", &T::phi_min, "The smallest admissible direction; null if there is none.")
+            .unit("rad")
+            .nullable(),
         field("phi-max", &T::phi_max).unit("rad").nullable(),
-        field("phi-known-min", &T::phi_known_min, "For reference points on the left face.").unit("rad").nullable(),
+        field("phi-known-min", &T::phi_known_min, "As phi-min, for reference points on the left face.")
+            .unit("rad")
+            .nullable(),
         field("phi-known-max", &T::phi_known_max).unit("rad").nullable(),
         field("phi", &T::phi, "The direction that is used.").unit("rad").nullable(),
-        field("approach", &T::approach, "From the part to the probe; null: the touch is not made.")
+        field("approach", &T::approach, "From the part to the probe; null if the touch is not made.")
             .means(Meaning::direction)
             .only_if(is_made),
         field("start", &T::start, "The ball's centre where the approach begins.")
             .means(Meaning::position)
             .only_if(is_made),
-        field("centre", &T::centre, "Of the ball at the contact, as predicted.")
+        field("centre", &T::centre, "The predicted centre of the ball at the contact.")
             .means(Meaning::position)
             .only_if(is_made),
         field("reason", &T::reason, "Why the touch is not made."),
-        field("false-share", &T::false_share, "Of the admissible reference points.").nullable(),
+        field("false-share", &T::false_share, "The share of admissible reference points where a face is met first.")
+            .nullable(),
         field("contact", &T::contact, "What the ball meets first."),
-        field("contact-distance", &T::contact_distance, "From the reference point.").means(Meaning::length).nullable(),
+        field("contact-distance", &T::contact_distance, "The distance of the contact from the reference point.")
+            .means(Meaning::length)
+            .nullable(),
         field("order", &T::order, "Position in the order of touches, from 0.").nullable()};
 }
 
@@ -118,12 +127,13 @@ constexpr std::array<std::string_view, 3> names_of(const ProbeMoveType*) {
 /// A move of the ball's centre along a polyline.
 struct ProbeMove {
     ProbeMoveType type;
-    u32 touch;  ///< row of the touch that the move leads to or, when it retracts, comes from
+    u32 touch;  ///< row of the touch that the move leads to; for a retraction, that it comes from
     Array<Vec3> points;  ///< positions of the ball's centre, relative to frame.origin
 };
 constexpr auto fields(const ProbeMove*) {
-    return std::tuple{field("type", &ProbeMove::type), field("touch", &ProbeMove::touch, "A row of the touches."),
-                      field("points", &ProbeMove::points, "World coordinates.").means(Meaning::position)};
+    return std::tuple{
+        field("type", &ProbeMove::type), field("touch", &ProbeMove::touch, "A row of the touches."),
+        field("points", &ProbeMove::points, "The ball's centre, in world coordinates.").means(Meaning::position)};
 }
 
 struct ProbePlan {
@@ -134,9 +144,9 @@ struct ProbePlan {
     /// retraction.
     std::vector<ProbeMove> moves;
 
-    double radius = 0;  ///< r, of the ball
+    double radius = 0;  ///< r: the radius of the ball
     double scanner_error = 0;  ///< delta: the largest distance of a reference point from the true edge
-    double clearance = 0;  ///< kept between the part, and ball and stylus, on clearance moves
+    double clearance = 0;  ///< the distance that ball and stylus keep from the part on clearance moves
     double stylus_radius = 0;
     double stylus_length = 0;  ///< from the ball's centre along the machine's axis
     /// a: the unit vector from the ball's centre along the stylus.
@@ -146,10 +156,10 @@ constexpr auto fields(const ProbePlan*) {
     using T = ProbePlan;
     return std::tuple{
         field("frame", &T::frame).flat(),
-        field("radius", &T::radius, "Of the ball.").means(Meaning::length),
+        field("radius", &T::radius, "The radius of the ball.").means(Meaning::length),
         field("scanner-error", &T::scanner_error, "The largest distance of a point from the true edge.")
             .means(Meaning::length),
-        field("clearance", &T::clearance, "Kept from the part.").means(Meaning::length),
+        field("clearance", &T::clearance, "The distance kept from the part on clearance moves.").means(Meaning::length),
         field("stylus-radius", &T::stylus_radius).means(Meaning::length),
         field("stylus-length", &T::stylus_length).means(Meaning::length),
         field("machine-axis", &T::machine_axis, "From the ball's centre along the stylus.").means(Meaning::direction),

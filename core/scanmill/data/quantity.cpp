@@ -14,9 +14,9 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> relative_suffixes{"u", "%diag", "spacing"};  // by Length::In
+constexpr std::array<std::string_view, 3> relative_suffixes{"u", "%diag", "spacing"};  // indexed by Length::In
 
-/// Unknown for the relative ones.
+/// LengthUnit::unknown for lengths that are relative or in the scan's unit.
 LengthUnit unit_of(Length::In in) {
     const auto relative = static_cast<int>(relative_suffixes.size());
     return static_cast<LengthUnit>(std::max(0, static_cast<int>(in) + 1 - relative));
@@ -68,7 +68,7 @@ Length Length::resolved(const LengthScale& scale) const try {
         const double length = reference ? reference() : 0;
         if (!(length > 0 && std::isfinite(length)))
             throw Error("{} cannot be resolved: the scan's {} is {}", text(), what, length)
-                .hint("give the length in the scan's unit, as 0.5 u");
+                .hint("give the length in the scan's unit, for example 0.5 u");
         return in_range(amount_ * factor * length);
     };
     if (in_ == In::scan_unit) return *this;
@@ -80,7 +80,7 @@ Length Length::resolved(const LengthScale& scale) const try {
         throw Error("{} needs a scan of known unit; this scan's unit is not declared", text())
             .hint(
                 "declare it with `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length in "
-                "the scan's own unit, as 0.5 u")
+                "the scan's own unit, for example 0.5 u")
             .remedy(Remedy::declare_unit);
     return in_range(in_unit(amount_, unit, scale.unit));
 } catch (const Error& error) {

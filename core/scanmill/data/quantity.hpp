@@ -3,9 +3,9 @@
 /// Numbers with dimensions, as people write them: lengths, angles, ratios.
 ///
 /// A Length is relative (`0.1 %diag`, `3 spacing`), absolute (`0.2 mm`) or in the scan's own unit (`0.5 u`); resolved()
-/// converts it to the scan's unit. Algorithms read lengths by value(), which requires a resolved one: the engine
-/// resolves the lengths that a filter uses before it runs (but see takes_spacings); a C++ caller writes
-/// `params.tolerance = 0.2` (scan units) or resolves with length_scale(cloud).
+/// converts it to the scan's unit. Algorithms read lengths with value(), which requires a resolved length. The engine
+/// resolves the lengths of a filter before it runs (except those declared with takes_spacings). A C++ caller writes
+/// `params.tolerance = 0.2` (scan units) or resolves lengths with length_scale(cloud).
 
 #include <functional>
 #include <string>
@@ -17,10 +17,10 @@
 
 namespace scanmill {
 
-/// The lengths of a scan that relative and absolute lengths are resolved with.
+/// The lengths of a scan that resolve relative and absolute lengths.
 struct LengthScale {
     LengthUnit unit = LengthUnit::unknown;
-    /// Return lengths in the scan's unit; called only if a length needs them.
+    /// Functions that return lengths in the scan's unit; called only if a length needs them.
     std::function<double()> diagonal, spacing;
 };
 
@@ -34,7 +34,7 @@ public:
     enum class In { scan_unit, percent_of_diagonal, spacing, micrometre, millimetre, centimetre, metre, inch, foot };
 
     constexpr Length() = default;
-    /// In the scan's own unit.
+    /// A length in the scan's own unit.
     constexpr Length(double amount) : amount_(amount) {}
     constexpr Length(double amount, In in) : amount_(amount), in_(in) {}
     static constexpr Length percent_of_diagonal(double amount) { return {amount, In::percent_of_diagonal}; }
@@ -46,11 +46,11 @@ public:
     /// The value in the scan's unit. Throws UnresolvedLength if the length is not resolved.
     double value() const;
     /// The same length in the scan's unit. Throws UnresolvedLength for an absolute length on a scan of unknown unit and
-    /// for a relative one if the reference is zero.
+    /// for a relative length if its reference is zero.
     Length resolved(const LengthScale& scale) const;
-    /// "0.1 %diag", shortest digits that read back equal.
+    /// "0.1 %diag", with the shortest digits that read back equal.
     std::string text() const;
-    /// A number, an optional space and a unit. Throws Error with what was expected.
+    /// Parses a number, an optional space and a unit. Throws Error with the expected forms.
     static Length parse(std::string_view text);
     bool operator==(const Length&) const = default;
 
@@ -59,7 +59,7 @@ private:
     In in_ = In::scan_unit;
 };
 
-/// A length that cannot be resolved against a scan, or that was read before it was resolved.
+/// The Error for a length that cannot be resolved against a scan, or that is read before it is resolved.
 class __attribute__((visibility("default"))) UnresolvedLength : public Error {
 public:
     UnresolvedLength(const Length& length, const Error& reason) : Error(reason), length_(length) {}

@@ -11,9 +11,10 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t points_per_stray = 500;
-constexpr double widening = 0.25;  // of the diagonal
+constexpr double widening = 0.25;  // fraction of the diagonal
 
-/// The entry of this rank, counted from 0, in the order of `sign` times the coordinate. Partitions the entries at it.
+/// The coordinate of the entry with this rank, counted from 0, when entries are sorted by `sign` times the coordinate.
+/// Partitions the entries at this rank.
 template <class Entries>
 double ranked(Entries& entries, std::size_t rank, double sign) {
     const auto nth = entries.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -22,7 +23,8 @@ double ranked(Entries& entries, std::size_t rank, double sign) {
     return nth->coordinate;
 }
 
-/// An order that soon visits every part of the file: neighbours in a file are neighbours in space.
+/// An order of the pieces that soon visits every part of the file. Neighbours in a file are neighbours in space, so few
+/// pieces then show the extent of the scan.
 Array<std::size_t> spread_order(std::size_t pieces) {
     Array<std::size_t> order;
     for (std::size_t step = std::bit_ceil(pieces); step > 0; step /= 2)
@@ -31,9 +33,9 @@ Array<std::size_t> spread_order(std::size_t pieces) {
     return order;
 }
 
-/// Whether it is certain that no point is stray: at least k + 1 points are within an eighth of the diagonal D of every
-/// side of the box. Then the box [a, b] lacks at most D/8 on every side, so its diagonal is at least
-/// D - sqrt(3) D/4 > D/2, and Q, wider by a quarter of that, contains all points.
+/// Whether at least k + 1 points are within an eighth of the diagonal D of every side of the box. If so, no point is
+/// stray: the box [a, b] lacks at most D/8 on every side, so its diagonal is at least D - sqrt(3) D/4 > D/2. Q is wider
+/// by more than a quarter of D/2 on every side and contains all points.
 bool has_no_stray(const PositionPieces& pieces, const BoundingBox& all) {
     const std::size_t needed = pieces.begin.back() / points_per_stray + 1;
     const double diagonal = all.diagonal();
@@ -56,7 +58,7 @@ bool has_no_stray(const PositionPieces& pieces, const BoundingBox& all) {
     return false;
 }
 
-/// The lowest and the highest coordinates of each axis.
+/// The lowest and the highest coordinates along each axis.
 class Extremes {
 public:
     /// Keeps at least the `positions` / 500 + 1 lowest and highest coordinates per axis.
@@ -66,7 +68,7 @@ public:
         std::size_t candidates = 0;
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const Vec3& p = positions[i];
-            // Without branches, and false for NaN: nearly all positions are between the limits.
+            // Nearly all positions are between the limits. The test has no branches and is false for NaN.
             const bool is_between = (p[0] >= low_limit_[0]) & (p[0] <= high_limit_[0]) & (p[1] >= low_limit_[1]) &
                                     (p[1] <= high_limit_[1]) & (p[2] >= low_limit_[2]) & (p[2] <= high_limit_[2]);
             if (is_between) continue;
@@ -77,7 +79,7 @@ public:
         finite_ += positions.size() - candidates;
     }
 
-    /// The stray points' rows, ascending, and the robust box. Pre: a position is finite.
+    /// The rows of the stray points, ascending, and the robust box. Pre: at least one position is finite.
     std::pair<Array<u32>, BoundingBox> stray_rows();
 
 private:
@@ -105,8 +107,8 @@ private:
 
     std::size_t wanted_;  // entries per axis and side
     std::size_t rows_ = 0, finite_ = 0;
-    std::array<Entries, 3> low_, high_;  // in no order
-    // Coordinates from low_limit_ to high_limit_ are no longer wanted.
+    std::array<Entries, 3> low_, high_;  // unordered
+    // Coordinates from low_limit_ to high_limit_ need not be kept.
     Vec3 low_limit_ = Vec3::Constant(std::numeric_limits<double>::infinity()), high_limit_ = -low_limit_;
 };
 
@@ -120,7 +122,8 @@ std::pair<Array<u32>, BoundingBox> Extremes::stray_rows() {
     const double margin = widening * inner.diagonal();
     const Vec3 low = inner.low.array() - margin, high = inner.high.array() + margin;
 
-    // A coordinate outside is beyond the one of that rank, so the entries have all of them.
+    // A coordinate outside [low, high] is beyond the coordinate of rank `most_stray`, so the entries contain all such
+    // coordinates.
     Array<u32> rows;
     for (std::size_t i = 0; i < 3; ++i) {
         for (const Entry& entry : low_[i])

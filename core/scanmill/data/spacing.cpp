@@ -20,7 +20,7 @@ constexpr std::size_t most_queries = 100'000;
 
 double length(const Vec3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
-/// Both zeros have one hash.
+/// The hash of a position; 0.0 and -0.0 have the same hash.
 std::uint64_t hash_of(const Vec3& p) {
     std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ double point_spacing(std::span<const Vec3> positions) {
     for (const u32 index : tree.index_of_row()) ++rows_at[index];
     std::vector<double> distances;
     if (points.size() <= most_queries) {
-        distances.resize(points.size(), 0);  // those of repeated points stay 0
+        distances.resize(points.size(), 0);  // distances of repeated points stay 0
         tree.for_each_nearest(1, 1, [&](const NeighbourBatch& batch) {
             for (std::size_t i = 0; i < batch.each * batch.indices.size(); ++i)
                 if (rows_at[batch.indices[i]] == 1)

@@ -14,17 +14,17 @@ namespace scanmill {
 using Tetrahedron = std::array<u32, 4>;
 
 struct TetMesh {
-    /// In `neighbours`: the facet is on the convex hull.
+    /// Value in `neighbours` for a facet on the convex hull.
     static constexpr u32 outside_hull = ~u32(0);
 
     Frame frame;
     /// #vertices, relative to frame.origin: the distinct input points, in input order.
     Buffer<Vec3> positions;
     ColumnTable vertex_columns;
-    /// #vertices, squared lengths in frame.unit, finite and not negative; empty if the points have no weights, which is
-    /// equivalent to equal weights. With weights, the cells are those of the regular triangulation: no vertex p has a
-    /// negative power |c - p|² - w_p - r² with regard to the sphere (c, r²) orthogonal to a cell's corners. Some
-    /// vertices may be hidden, that is in no cell.
+    /// #vertices, squared lengths in frame.unit, finite and not negative. Empty if the points have no weights, which is
+    /// equivalent to equal weights. With weights, the cells form the regular triangulation. Let (c, r²) be the sphere
+    /// orthogonal to the corners of a cell: then no vertex p has a negative power |c - p|² - w_p - r². A vertex may be
+    /// hidden, which means that it is in no cell.
     Buffer<double> weights;
     /// #cells finite cells in canonical order: each cell begins with its smallest index and is the lexicographically
     /// smallest even permutation of itself; cells ascend lexicographically.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr u32 none = ~u32(0);
 
-/// Whether the fan of triangles that contains `corner`, around its vertex, has `corners` corners. Pre: no edge at the
-/// vertex is in more than two triangles.
+/// Whether the fan of triangles around the vertex of `corner` that contains `corner` has exactly `corners` corners.
+/// Pre: no edge at the vertex is in more than two triangles.
 bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& opposite, u32 corner, u32 corners) {
     const u32 vertex = half_edges::start(mesh, corner);
     u32 visited = 1;
@@ -45,7 +45,7 @@ MeshTopology topology(const TriangleMesh& mesh) {
     result.vertices = static_cast<std::size_t>(std::ranges::count(used, true));
     result.unused_vertices = used.size() - result.vertices;
 
-    std::vector<u32> opposite(3 * mesh.triangles.size(), none);  // across edges of two triangles
+    std::vector<u32> opposite(3 * mesh.triangles.size(), none);  // for edges in exactly two triangles
     DisjointSets faces(mesh.triangles.size());
     DisjointSets boundary(mesh.positions.size());
     std::vector<bool> on_boundary(mesh.positions.size(), false);

@@ -12,22 +12,23 @@
 namespace scanmill {
 
 struct MeshTopology {
-    std::size_t vertices = 0;         ///< used by a triangle
-    std::size_t unused_vertices = 0;  ///< in no triangle
+    std::size_t vertices = 0;         ///< vertices that are in a triangle
+    std::size_t unused_vertices = 0;  ///< vertices that are in no triangle
     std::size_t edges = 0;
     std::size_t triangles = 0;
-    std::size_t degenerate_triangles = 0;   ///< with a repeated vertex
-    std::size_t boundary_edges = 0;         ///< in exactly one triangle
-    std::size_t nonmanifold_edges = 0;      ///< in three or more triangles
-    std::size_t nonmanifold_vertices = 0;   ///< whose triangles do not form exactly one fan, open or closed
-    std::size_t misoriented_edges = 0;      ///< whose two half-edges have the same direction
+    std::size_t degenerate_triangles = 0;   ///< triangles with a repeated vertex
+    std::size_t boundary_edges = 0;         ///< edges in exactly one triangle
+    std::size_t nonmanifold_edges = 0;      ///< edges in three or more triangles
+    std::size_t nonmanifold_vertices = 0;   ///< vertices whose triangles are not exactly one fan, open or closed
+    std::size_t misoriented_edges = 0;      ///< edges with two half-edges of the same direction
     std::size_t boundary_loops = 0;         ///< connected components of the graph of boundary edges
-    std::size_t components = 0;             ///< connected through edges
+    std::size_t components = 0;             ///< components of triangles that are connected through edges
     /// V − E + F over the used vertices.
     long euler = 0;
-    /// Every edge has exactly two half-edges, of opposite directions, and every vertex a single fan.
+    /// Whether the mesh has triangles, every edge has exactly two half-edges of opposite directions, and every vertex
+    /// has a single fan.
     bool closed = false;
-    /// Summed over the components, holes counted as filled. Only for oriented manifolds, open or closed.
+    /// The sum over the components, with holes counted as filled. Set only for oriented manifolds, open or closed.
     std::optional<long> genus;
 };
 

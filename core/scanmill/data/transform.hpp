@@ -13,7 +13,7 @@ namespace scanmill {
 struct RigidTransform {
     /// Orthonormal with determinant +1.
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    /// Length in `unit`, between world positions (frame origins included).
+    /// Lengths in `unit`. Applies to world positions, which include the frame's origin.
     Vec3 translation = Vec3::Zero();
     LengthUnit unit = LengthUnit::unknown;
     std::string from, to;

@@ -26,7 +26,7 @@ TEST(DecimateReal, DragonWithMoreThanTwoTrianglesAtEdges_IsRefused) {
     SCANMILL_REAL_SCAN(path, fetched_data, "dragon/dragon_vrip_res3.ply");
     const auto mesh = read_mesh(path);
     const Error error = error_of([&] { decimated(*mesh, 0.001); });
-    EXPECT_THAT(error.sentence(), testing::HasSubstr("a surface has at most 2 at an edge"));
+    EXPECT_THAT(error.sentence(), testing::HasSubstr("an edge of a surface is in at most 2"));
     EXPECT_FALSE(error.hint().empty());
 }
 
