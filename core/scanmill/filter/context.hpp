@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The surroundings of a running filter: an Execution, and warnings, doubts, metrics, random numbers and a scratch
+/// The environment of a running filter: an Execution with warnings, doubts, metrics, random numbers and a scratch
 /// folder. A C++ program that calls an algorithm directly creates a `Context context;`.
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace scanmill {
 
 struct ContextOptions : ExecutionOptions {
     std::uint64_t seed = 0;
-    /// Exists while the algorithm runs; empty: there is none.
+    /// A folder that exists while the algorithm runs; empty if there is none.
     std::filesystem::path scratch;
     /// Called from any thread, one call at a time.
     std::function<void(std::string_view text)> on_warning;
@@ -26,7 +26,7 @@ struct ContextOptions : ExecutionOptions {
 
 struct Doubt {
     std::string text;
-    std::string port;  ///< empty: all outputs
+    std::string port;  ///< the output that the text is about; empty for all outputs
 };
 constexpr auto fields(const Doubt*) {
     using R = Doubt;
@@ -38,13 +38,13 @@ public:
     explicit Context(ContextOptions options = {});
 
     /// Reports one sentence about a valid but remarkable result; callable from any thread. After most_warnings
-    /// sentences, one more reports that there were more.
+    /// sentences, a last one reports that there were more.
     void warn(std::string text);
     /// Reports one sentence on why the result is probably not what the user wants. The cells that use the result end
-    /// as doubtful. `port`: the output that the doubt is about; empty: all outputs. Callable from any thread.
+    /// as doubtful. `port` is the output that the doubt is about; empty means all outputs. Callable from any thread.
     void doubt(std::string text, std::string port = {});
     void metric(std::string_view name, double value, Unit unit = Unit::count);
-    /// A generator for this run's seed; every call returns the same state, so split it with stream().
+    /// A generator with this run's seed. Every call returns the same state; derive others with stream().
     Random random() const { return Random(seed_); }
     const std::filesystem::path& scratch() const { return scratch_; }
 

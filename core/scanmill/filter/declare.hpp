@@ -8,7 +8,8 @@
 ///     .param("bin-size", &P::bin_size, "Edge of a voxel.", above(0), word("auto"))
 ///
 /// Field types: bool, integers, double, std::string, std::filesystem::path, Length, Angle, Ratio, std::vector of these,
-/// and std::optional of any of these for a parameter that may be omitted or replaced by its word (then nullopt).
+/// and std::optional of any of these for a parameter that may be omitted or replaced by its word. The field is then
+/// nullopt.
 
 #include <concepts>
 #include <filesystem>
@@ -32,12 +33,12 @@ struct FilterDeclaration {
     FilterSpec spec;
     /// Pre: every declared parameter has a value (resolved, in range) and every non-optional input is wired.
     std::function<Outputs(const Inputs&, const ParameterSet&, Context&)> run;
-    /// The same for a streamed input. Pre: spec.streams, and its parameters have values.
+    /// Runs the filter on a streamed input. Pre: spec.streams is set, and the parameters that it names have values.
     std::function<Outputs(const PointStream&, const ParameterSet&, Context&)> run_streamed;
 };
 
-/// Bounds of a parameter. Lengths are compared as written, whatever their unit, so their bounds should be 0; angles in
-/// degrees, ratios as fractions.
+/// Bounds of a parameter. Lengths are compared as written, regardless of their unit, so the bounds of a length should
+/// be 0. Angles are compared in degrees, ratios as fractions.
 inline auto bound(std::optional<Bound> ParameterSpec::*side, double value, bool inclusive) {
     return [=](ParameterSpec& spec) { spec.*side = Bound{value, inclusive}; };
 }
@@ -45,7 +46,8 @@ inline auto above(double value) { return bound(&ParameterSpec::low, value, false
 inline auto at_least(double value) { return bound(&ParameterSpec::low, value, true); }
 inline auto below(double value) { return bound(&ParameterSpec::high, value, false); }
 inline auto at_most(double value) { return bound(&ParameterSpec::high, value, true); }
-/// A word accepted in place of a value, and the default. Pre: the field is a std::optional, empty by default.
+/// A word that is accepted in place of a value. The word is also the default. Pre: the field is a std::optional, empty
+/// by default.
 inline auto word(std::string text) {
     return [text = std::move(text)](ParameterSpec& spec) {
         spec.word = text;
@@ -57,12 +59,13 @@ inline constexpr auto required = [](ParameterSpec& spec) {
     spec.required = true;
     spec.default_value = std::monostate{};
 };
-/// If the other parameter is given, the default of this one is not used, and relative lengths in it need no scan.
+/// If the parameter `other` is given, the default of this parameter is not used. Its relative lengths then need no
+/// scan.
 inline auto unless_given(std::string other) {
     return [other = std::move(other)](ParameterSpec& spec) { spec.unless_given = other; };
 }
-/// The filter computes the spacing itself, as a part of what it computes anyway: lengths in `spacing` reach it as they
-/// are written, other ones resolved.
+/// Lengths in `spacing` reach the filter as they are written; other lengths reach it resolved. For filters that compute
+/// the spacing in any case.
 inline constexpr auto takes_spacings = [](ParameterSpec& spec) { spec.takes_spacings = true; };
 /// A list of exactly this many values.
 inline auto size(std::size_t count) {
@@ -149,25 +152,25 @@ void assign(std::optional<T>& field, const ParameterValue& value) {
 
 }  // namespace detail
 
-/// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
-/// A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`.
+/// Options of an input port, in any combination: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points",
+/// "…", list)`. A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`.
 enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
 
-/// Option of an output: only steps that name it in `in` take it.
+/// Option of an output: only steps that name the output in `in` take its value.
 enum class OutputOption { by_name };
 inline constexpr OutputOption by_name = OutputOption::by_name;
 
-/// Metric options, any of them: a column in a run's summary; reported once per item (NAME, NAME@2, …); which of two
-/// values is better, where one is.
+/// Options of a metric, in any combination. A headline is a column in a run's summary. A numbered metric is reported
+/// once per item: NAME, NAME@2, … The last two options state which of two values is better.
 enum class MetricOption { headline, numbered, larger_is_better, smaller_is_better };
 inline constexpr MetricOption headline = MetricOption::headline;
 inline constexpr MetricOption numbered = MetricOption::numbered;
 inline constexpr MetricOption larger_is_better = MetricOption::larger_is_better;
 inline constexpr MetricOption smaller_is_better = MetricOption::smaller_is_better;
 
-/// One alternative of a choice: its written name, the enumerator, what it does.
+/// One alternative of a choice: its written name, its enumerator and the description of its effect.
 template <class Enum>
 struct Alternative {
     std::string name;
@@ -199,7 +202,7 @@ public:
                                             {kind_of<Others>()...}});
         return *this;
     }
-    /// The filter that usually produces the value of the last declared input: examples start with it.
+    /// Names the filter that usually produces the value of the last declared input. Examples start with this filter.
     Declare& made_by(std::string filter) {
         declaration_.spec.inputs.back().maker = std::move(filter);
         return *this;
@@ -211,7 +214,7 @@ public:
         declaration_.spec.outputs.back().by_name = ((options == OutputOption::by_name) || ...);
         return *this;
     }
-    /// An output of the kind of the value at the input `like`, which is declared before it.
+    /// Declares an output that has the kind of the value at the input `like`. Pre: this input is already declared.
     Declare& out_like(std::string port, std::string like, std::string help) {
         PortSpec spec{std::move(port), {}, std::move(help)};
         if (const PortSpec* input = declaration_.spec.input(like)) spec.kind = input->kind;
@@ -261,7 +264,8 @@ public:
                                                                       : Better::neither});
         return *this;
     }
-    /// The filter measures the value at one input by the truth at another: a batch applies it to its results.
+    /// Declares that the filter compares the value at one input with the truth at another input. A batch applies such a
+    /// filter to its results.
     Declare& measures(std::string value, std::string truth) {
         declaration_.spec.measures = MeasureSpec{std::move(value), std::move(truth)};
         return *this;

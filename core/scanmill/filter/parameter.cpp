@@ -43,7 +43,7 @@ std::vector<std::string> choice_names(const ParameterSpec& spec) {
 struct TypeRow {
     std::string_view noun, example;
     ParameterScalar (*parse)(const ParameterSpec& spec, const std::string& text);
-    bool parse_names_expected;  ///< its errors already contain what was expected
+    bool parse_names_expected;  ///< whether the Error of `parse` already states what was expected
 };
 
 ParameterScalar parse_boolean(const ParameterSpec&, const std::string& text) {
@@ -78,7 +78,7 @@ ParameterScalar parse_quantity(const ParameterSpec&, const std::string& text) {
     return Quantity::parse(text);
 }
 
-/// By ParameterType.
+/// Indexed by ParameterType.
 constexpr std::array<TypeRow, 9> types{{
     {"true or false", "", parse_boolean, false},
     {"a whole number", "", parse_integer, false},
@@ -93,7 +93,7 @@ constexpr std::array<TypeRow, 9> types{{
 
 const TypeRow& row_of(ParameterType type) { return types[static_cast<std::size_t>(type)]; }
 
-/// The number that a bound compares; nothing for types without an order.
+/// The number that is compared with a bound; nullopt for types without an order.
 std::optional<double> amount(const ParameterScalar& value) {
     return std::visit(Overloaded{
                           [](std::int64_t number) -> std::optional<double> { return static_cast<double>(number); },
@@ -127,7 +127,7 @@ std::string canonical_scalar(const ParameterScalar& value) {
                       value);
 }
 
-/// No item, one or several. `Value` is ParameterValue or const ParameterValue.
+/// The items of a value: none, one or several. `Value` is ParameterValue or const ParameterValue.
 template <class Value>
 auto items_of(Value& value) {
     using Item = std::conditional_t<std::is_const_v<Value>, const ParameterScalar, ParameterScalar>;

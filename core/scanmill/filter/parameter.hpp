@@ -32,7 +32,7 @@ constexpr auto fields(const Word*) { return std::tuple{field("text", &Word::text
 
 /// Choices, texts and paths are strings.
 using ParameterScalar = std::variant<bool, std::int64_t, double, std::string, Length, Angle, Ratio, Word>;
-/// Nothing (an omitted optional parameter), one value, or a list.
+/// No value (for an omitted optional parameter), one value, or a list.
 using ParameterValue = std::variant<std::monostate, ParameterScalar, std::vector<ParameterScalar>>;
 
 struct Bound {
@@ -56,18 +56,18 @@ struct ParameterSpec {
     ParameterType type = ParameterType::number;
     bool list = false;
     std::optional<std::size_t> size;  ///< exact length of a list
-    bool required = false;            ///< has no default
-    std::string word;                 ///< accepted in place of a value; empty: none
-    std::optional<Bound> low, high;   ///< limits of the amount as written; angles: in degrees, ratios: the fraction
+    bool required = false;            ///< there is no default
+    std::string word;                 ///< accepted in place of a value; empty if there is no such word
+    std::optional<Bound> low, high;   ///< limits of the written amount; angles in degrees, ratios as fractions
     std::vector<Choice> choices;
-    /// Another parameter; if it has a value, the default of this one is not used.
+    /// Another parameter. If the other parameter has a value, the default of this one is not used.
     std::string unless_given;
     bool takes_spacings = false;   ///< lengths in `spacing` reach the filter as they are written
-    ParameterValue default_value;  ///< nothing: required, or optional without default
+    ParameterValue default_value;  ///< no value if required, or optional without default
 
     bool operator==(const ParameterSpec&) const = default;
 };
-/// Without the default value, whose form depends on the others.
+/// The default value is not among the fields, because its form depends on the other members.
 constexpr auto fields(const ParameterSpec*) {
     using T = ParameterSpec;
     return std::tuple{
@@ -76,7 +76,7 @@ constexpr auto fields(const ParameterSpec*) {
         field("help", &T::help),
         field("list", &T::list).optional(),
         field("size", &T::size, "The exact length of the list.").optional(),
-        field("required", &T::required, "It has no default.").optional(),
+        field("required", &T::required, "The parameter has no default.").optional(),
         field("word", &T::word, "Accepted in place of a value.").optional(),
         field("low", &T::low).optional(),
         field("high", &T::high).optional(),
@@ -101,16 +101,16 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
 /// Throws Error when the value is out of the declared range.
 void require_in_range(const ParameterSpec& spec, const ParameterValue& value);
 
-/// The value as people write it: "0.1 %diag", "[0, 1]"; empty if it has none.
+/// The value as people write it: "0.1 %diag", "[0, 1]"; empty for no value.
 std::string text(const ParameterValue& value);
-/// The same text for equal values, for cache keys: 40 deg and 0.698… rad have one text.
+/// A text for cache keys that is the same for equal values: 40 deg and 0.698… rad have one text.
 std::string canonical_text(const ParameterValue& value);
-/// The text(s) that parse() reads back to the same value. Pre: not nothing.
+/// The text or texts that parse() reads back to the same value. Pre: there is a value.
 WrittenParameter written(const ParameterValue& value);
 
-/// Whether there is a value, neither nothing nor a word.
+/// Whether there is a value other than a word.
 bool has_value(const ParameterValue* value);
-/// Whether a length in it is in `spacing`.
+/// Whether the value contains a length in `spacing`.
 bool is_in_spacings(const ParameterValue& value);
 /// The value with all lengths in the scan's own unit.
 ParameterValue resolved(ParameterValue value, const LengthScale& scale);

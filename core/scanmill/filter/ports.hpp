@@ -24,14 +24,14 @@ public:
         assert(object);
         return *object;
     }
-    /// nullptr if nothing is wired, or a value of another accepted kind.
+    /// The value wired to `port`; nullptr if there is none or if it has another accepted kind.
     template <class T>
     const T* find(std::string_view port) const {
         const auto found = values_.find(port);
         if (found == values_.end()) return nullptr;
         return found->second.front().find<T>();
     }
-    /// Everything wired to a list port, in order.
+    /// All values wired to a list port, in order.
     template <class T>
     std::vector<std::shared_ptr<const T>> list(std::string_view port) const {
         std::vector<std::shared_ptr<const T>> objects;

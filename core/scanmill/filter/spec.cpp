@@ -53,7 +53,7 @@ void require_names(std::string_view filter, std::string_view what, const Items& 
     }
 }
 
-/// A remark that the whole filter must have.
+/// Throws Error unless the filter's remark on `subject` is a sentence.
 void require_remark(std::string_view filter, std::string_view subject, std::string_view remark) {
     if (remark.empty()) throw Error("filter {}: the remark on {} is missing", filter, subject);
     require_sentence(filter, "remark on", subject, remark);
@@ -65,8 +65,7 @@ void require_sound_parameter(const FilterSpec& spec, const ParameterSpec& parame
         throw Error("filter {}: parameter '{}' is used unless '{}' is given, which is not a parameter", filter,
                     parameter.name, parameter.unless_given);
     if (parameter.takes_spacings && (parameter.list || parameter.type != ParameterType::length))
-        throw Error("filter {}: parameter '{}' takes lengths in spacing as they are written and is not a single length",
-                    filter, parameter.name);
+        throw Error("filter {}: parameter '{}' takes spacings, but is not a single length", filter, parameter.name);
     if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
         throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
     std::set<std::string_view> names;
@@ -91,8 +90,9 @@ void require_sound_stream(const FilterSpec& spec) {
     if (std::ranges::count_if(spec.inputs, is_required) != 1 || !is_required(spec.inputs.front()) ||
         spec.inputs.front().kind != kind_of<PointCloud>() || spec.inputs.front().list ||
         !spec.inputs.front().also.empty())
-        throw Error("filter {}: only a filter with one required input, the first, a cloud of points, can be streamed",
-                    spec.name);
+        throw Error(
+            "filter {}: cannot be streamed; its first input must be a cloud of points and its only required input",
+            spec.name);
     for (const std::string& name : spec.streams->given) {
         const ParameterSpec* parameter = spec.parameter(name);
         if (!parameter) throw Error("filter {}: its stream needs '{}', which is not a parameter", spec.name, name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// The declaration of a filter as data: name, ports, parameters, metrics. Help, validation, schema and pages derive
-/// from it; it can be read from a manifest without loading the filter.
+/// from this declaration. It can be read from a manifest without loading the filter.
 
 #include <algorithm>
 #include <optional>
@@ -20,26 +20,27 @@ struct PortSpec {
     std::string help;
     bool list = false;      ///< any number of values; inputs only
     bool optional = false;  ///< need not be wired; inputs only
-    std::vector<Kind> also{};  ///< other accepted kinds; inputs only. Such a port is wired by `in` alone
-    std::string
-        like{};  ///< the input that determines the value's kind; outputs only. `kind` is that input's first kind
-    std::string maker{};  ///< the filter that usually produces the value; empty: any of the kind
-    bool by_name = false;  ///< no later step takes it as the nearest value of its kind; outputs only
+    std::vector<Kind> also{};  ///< other accepted kinds; inputs only. Only `in` can wire a port that has some
+    /// The input that determines the value's kind; outputs only. `kind` is the first kind of this input.
+    std::string like{};
+    std::string maker{};  ///< the filter that usually produces the value; empty if no filter is typical
+    bool by_name = false;  ///< later steps take the value only if they name it; outputs only
 
     bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;
 };
 constexpr auto fields(const PortSpec*) {
     using T = PortSpec;
-    return std::tuple{field("name", &T::name),
-                      field("kind", &T::kind),
-                      field("help", &T::help),
-                      field("list", &T::list, "It takes any number of values.").optional(),
-                      field("optional", &T::optional).optional(),
-                      field("also", &T::also, "Other kinds that it takes.").optional(),
-                      field("like", &T::like, "The input whose kind it has.").optional(),
-                      field("maker", &T::maker, "The filter that usually makes its value.").optional(),
-                      field("by-name", &T::by_name, "No later step takes it unless it names it.").optional()};
+    return std::tuple{
+        field("name", &T::name),
+        field("kind", &T::kind),
+        field("help", &T::help),
+        field("list", &T::list, "The port takes any number of values.").optional(),
+        field("optional", &T::optional).optional(),
+        field("also", &T::also, "Other kinds that the port takes.").optional(),
+        field("like", &T::like, "The input whose kind the output has.").optional(),
+        field("maker", &T::maker, "The filter that usually makes the value.").optional(),
+        field("by-name", &T::by_name, "Later steps take the value only if they name the output.").optional()};
 }
 
 /// "mesh or points".
@@ -65,10 +66,10 @@ constexpr auto fields(const MetricSpec*) {
                       field("better", &T::better).optional()};
 }
 
-/// For filters that can stream their first input if no other input is wired: the scan file is read piece by piece and
-/// never held in memory as a whole.
+/// For filters that can stream their first input if no other input is wired. The scan file is then read piece by piece
+/// and never in memory as a whole.
 struct StreamSpec {
-    /// Parameters that must have a value, that is neither be omitted nor be their word.
+    /// Parameters that must have a value, which means that they are neither omitted nor replaced by their word.
     std::vector<std::string> given;
 
     bool operator==(const StreamSpec&) const = default;
@@ -93,12 +94,13 @@ struct FilterSpec {
     std::string ties;  ///< the rule for ties
     std::string not_finite;  ///< the handling of NaN and infinite coordinates
     std::vector<PortSpec> inputs;
-    std::vector<PortSpec> outputs;  ///< the first is the primary one: what the step's name alone refers to
+    std::vector<PortSpec> outputs;  ///< the step's name alone refers to the first, the primary output
     std::vector<ParameterSpec> parameters;
     std::vector<MetricSpec> metrics;
     std::optional<StreamSpec> streams;
     std::optional<MeasureSpec> measures;
-    /// Names of columns that it may add to its outputs. Formats that cannot hold them leave them out without a warning.
+    /// Names of columns that the filter may add to its outputs. Formats that cannot hold these columns leave them out
+    /// without a warning.
     std::vector<std::string> adds;
 
     const PortSpec* input(std::string_view port) const;
@@ -121,17 +123,22 @@ constexpr auto fields(const FilterSpec*) {
         field("outputs", &T::outputs),
         field("parameters", &T::parameters),
         field("metrics", &T::metrics),
-        field("streams", &T::streams, "It can read its first input as a stream.").optional(),
-        field("measures", &T::measures, "It measures the value at one input by the truth at another.").optional(),
-        field("adds", &T::adds, "Columns that it may add.").optional()};
+        field("streams", &T::streams, "The filter can read its first input as a stream.").optional(),
+        field("measures", &T::measures, "The filter compares the value at one input with the truth at another.")
+            .optional(),
+        field("adds", &T::adds, "Columns that the filter may add to its outputs.").optional()};
 }
 
-/// Throws Error for an unsound declaration: names that repeat or are not lower-case-with-hyphens, help that is not a
-/// sentence or only repeats the name, a default outside its range, no output; a missing remark on ties (filters with
-/// inputs) or on NaN (filters that take points or meshes); a number of neighbours whose help does not state whether the
-/// point itself is counted; a stream whose first input is not one cloud of points or that has other required inputs, or
-/// that needs parameters that do not exist or always have a value; a filter that measures and lacks one of the two
-/// inputs.
+/// Throws Error for an unsound declaration:
+/// - A name is not lower-case-with-hyphens, or two names are equal.
+/// - A help text is not a sentence or only repeats the name. The help of a number of neighbours does not state whether
+///   the point itself is counted.
+/// - A default is outside its range.
+/// - There is no output.
+/// - The remark on ties (filters with inputs) or on NaN (filters that take points or meshes) is missing.
+/// - The filter can be streamed, but its first input is not one cloud of points, or another input is required.
+/// - The stream needs a parameter that does not exist or that always has a value.
+/// - The filter compares a value with a truth, but lacks one of these two inputs.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

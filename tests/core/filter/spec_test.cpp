@@ -197,9 +197,7 @@ TEST(RequireSound, UnlessGiven_NamesAnotherParameter) {
 }
 
 TEST(RequireSound, TakesSpacings_IsForOneLength) {
-    const std::string refusal =
-        "filter voxel-thin: parameter 'bin-size' takes lengths in spacing as they are written and is not a single "
-        "length";
+    const std::string refusal = "filter voxel-thin: parameter 'bin-size' takes spacings, but is not a single length";
     EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].takes_spacings = true; }), refusal);
     const auto make_length = [](FilterSpec& spec) {
         spec.parameters[0].type = ParameterType::length;
@@ -242,7 +240,7 @@ TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
     EXPECT_EQ(with_stream({"empty"}, [](FilterSpec& spec) { spec.parameters.back().required = true; }),
               "filter voxel-thin: its stream needs 'empty', which always has a value");
     const std::string other =
-        "filter voxel-thin: only a filter with one required input, the first, a cloud of points, can be streamed";
+        "filter voxel-thin: cannot be streamed; its first input must be a cloud of points and its only required input";
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.clear(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = kind_of<TriangleMesh>(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().list = true; }), other);
