@@ -12,13 +12,13 @@ namespace scanmill {
 
 namespace {
 
-/// Whether a byte order mark of UTF-8 begins a text, or a PLY file.
+/// Whether `bytes` are a text or a PLY file that begins with a byte order mark of UTF-8.
 bool is_marked_text(std::string_view bytes) {
     const std::string_view head = bytes.substr(0, head_size), text = without_byte_order_mark(head);
     return text.size() < head.size() && (text.starts_with("ply") || text.find('\0') == std::string_view::npos);
 }
 
-/// `options.on_warning`, with the file's name before each sentence if they ask for it.
+/// `options.on_warning`, with the file's name before each sentence if the options ask for it.
 OnWarning warnings_of(const std::filesystem::path& path, const ReadOptions& options) {
     return options.names_file ? warnings_with_file_name(path, options.on_warning) : options.on_warning;
 }
@@ -34,7 +34,8 @@ LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     return loaded;
 }
 
-/// Throws Error for a value without points. Features may be empty: a closed, smooth mesh has none.
+/// The writer for the file's extension and the value's kind. Throws Error if there is none, or for a value without
+/// points. Features may be empty, because a closed, smooth mesh has none.
 Format::Write writer_for(const std::filesystem::path& path, const Value& value) {
     const Kind kind = kind_of(value);
     const std::string extension = path.extension().string();
@@ -69,7 +70,7 @@ u64 memory_to_read(const std::filesystem::path& path) {
                                     : Format().memory_per_byte;
         return static_cast<u64>(per_byte * static_cast<double>(file.bytes().size()));
     } catch (const Error&) {
-        return 0;  // read_file() throws it again, with the file's name
+        return 0;  // read_file() throws the Error again, with the file's name
     }
 }
 
@@ -139,7 +140,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
             return format.open_stream(std::move(file), {warnings_of(path, options), options.unit}, threads,
                                       on_positions);
     } catch (const Error&) {
-        // read_points() throws it again, with the file's name.
+        // read_points() throws the Error again, with the file's name.
     }
     return nullptr;
 }

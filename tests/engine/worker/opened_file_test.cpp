@@ -55,7 +55,7 @@ protected:
 TEST_F(OpenedFile, IsDoubtfulAndReportedAsNotClosed) {
     const JobReport report = written(false);
     EXPECT_EQ(report.outcome, Outcome::ok) << report.node.failure.whole().what();
-    EXPECT_THAT(report.output.doubts, ElementsAre(HasSubstr("the mesh is closed and the STL file is not")));
+    EXPECT_THAT(report.output.doubts, ElementsAre(HasSubstr("the mesh is closed, but the STL file is not")));
     EXPECT_EQ(report.output.properties.find("closed")->value, 0);
     EXPECT_FALSE(topology(*read_mesh(folder_ / "mesh.stl")).closed);
 }
@@ -64,7 +64,8 @@ TEST_F(OpenedFile, ThatMustBeClosed_IsNotWritten) {
     const JobReport report = written(true);
     EXPECT_EQ(report.outcome, Outcome::failed);
     EXPECT_EQ(report.node.failure.cause, Cause::output);
-    EXPECT_THAT(report.node.failure.whole().what(), HasSubstr("expected closed: true; the mesh is closed and the STL"));
+    EXPECT_THAT(report.node.failure.whole().what(),
+                HasSubstr("expected closed: true; the mesh is closed, but the STL"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "mesh.stl"));
 }
 

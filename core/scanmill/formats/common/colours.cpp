@@ -68,7 +68,7 @@ void RowColours::read_row(TextCursor& text, std::size_t leave) {
         if (!parse_number(token, value))
             throw Error("line {}: {} is not a number for a colour", text.line(), quote(token));
         if (width == most) throw Error("line {}: more than {} numbers for a colour", text.line(), most);
-        // 1.0 is a full channel, 1 the faintest: the spelling decides.
+        // The spelling decides: 1.0 is a full channel, 1 may be the byte 1.
         if (token.find_first_not_of("0123456789") != std::string_view::npos || value > 255) bytes_ = false;
         if (fractions_ && !byte_of_fraction(token, value)) fractions_ = false;
         values_.push_back(value);
@@ -83,8 +83,8 @@ void RowColours::add_columns(ColumnTable& columns, std::string_view elements,
     if (coloured_ == 0) return;
     if (!uniform_ || coloured_ != rows_ || width_ == 2)
         return warn(on_warning,
-                    "the colours of {} of {} {} were left out: some have none or another number of channels", coloured_,
-                    rows_, elements);
+                    "the colours of {} of {} {} were left out: all need the same number of channels, 1, 3 or 4",
+                    coloured_, rows_, elements);
     if ((bytes_ || fractions_) && width_ >= 3) {
         const double full = fractions_ ? 255 : 1;
         Array<u8> colours(values_.size());

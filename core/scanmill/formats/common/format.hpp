@@ -24,7 +24,7 @@ class OutputBuffer;
 struct ReadOptions {
     /// Called with one sentence for everything that is left out, changed or doubtful. May be empty.
     std::function<void(std::string)> on_warning;
-    /// Unless unknown, the unit of the coordinates; it overrides the unit that the file declares.
+    /// The unit of the coordinates. Unless unknown, it overrides the unit that the file declares.
     LengthUnit unit = LengthUnit::unknown;
     bool names_file = true;  ///< whether warnings begin with the file's name
 };
@@ -36,7 +36,7 @@ struct LoadedFile {
     std::string encoding;  ///< "binary little-endian", "ascii"
     /// The file's comments, in order: comment and obj_info lines, `#` lines, the text of an STL header.
     std::vector<std::string> comments;
-    /// A row with NaN means a ray without a return: a format of organised scans.
+    /// Whether a row with NaN means a ray without a return, as in formats of organised scans.
     bool nan_is_no_return = false;
 };
 
@@ -47,9 +47,9 @@ struct WriteOptions {
     std::function<void(std::string_view)> on_bytes = {};
     /// Called if the coordinates in the file need `shift` added to become world coordinates. May be empty.
     std::function<void(const Vec3& shift)> on_shift = {};
-    /// Called with one sentence if the mesh is closed and the one in the file is not; if empty, that is a warning.
+    /// Called with one sentence if the mesh is closed and the written mesh is not. If empty, the sentence is a warning.
     std::function<void(std::string sentence)> on_opened = {};
-    /// Names of columns that filters added: leaving them out needs no warning.
+    /// Names of columns that filters added. Such columns are left out without a warning.
     std::set<std::string, std::less<>> added_columns = {};
 };
 
@@ -59,10 +59,11 @@ struct FileBytes {
     std::string_view bytes;
 };
 
-/// Confidence of a format in that a file is its own. Certain beats the extension, the extension beats plausible.
+/// How certain a format is that a file has this format. `certain` has precedence over the file's extension; the
+/// extension has precedence over `plausible`.
 enum class Recognition { no, plausible, certain };
 
-/// The first bytes of a file that recognises() may read.
+/// The number of first bytes of a file that recognises() may read.
 constexpr std::size_t head_size = 4096;
 
 struct Format {
@@ -75,22 +76,24 @@ struct Format {
                                                    unsigned threads, const OnWorldPositions& on_positions)>;
 
     std::string name;
-    /// Lower case, without the dot; the first is the one to propose.
+    /// Lower case, without the dot. The first extension is proposed to users.
     std::vector<std::string> extensions;
     Recognise recognises;
     Read read;
     std::vector<std::pair<Kind, Write>> writers;
-    /// `read` always throws: the format is only written, or listed so that its refusal names an alternative.
+    /// Whether `read` always throws. Such a format is only written, or it is listed so that its refusal names an
+    /// alternative.
     bool is_refused = false;
     /// The reason why its module cannot be used, as a part of a sentence; `read` throws it.
     std::string unusable = {};
-    /// Whether open_stream() may succeed; reads only the file's beginning and end. Both functions are empty for formats
-    /// that cannot be streamed, and may throw Error for a file that `read` refuses as well.
+    /// Whether open_stream() may succeed; reads only the beginning and the end of the file. Both functions are empty
+    /// for formats that cannot be streamed. They may throw Error for a file that `read` refuses as well.
     std::function<bool(std::string_view file)> may_stream = {};
-    /// Null for a file that cannot be streamed.
+    /// Returns null for a file that cannot be streamed.
     OpenStream open_stream = {};
-    /// About the bytes of memory per byte of the file that reading takes, with a tree over the points or the topology
-    /// of the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed mesh 90.
+    /// The approximate memory, in bytes per byte of the file, for reading and for a tree over the points or the
+    /// topology of the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed
+    /// mesh 90.
     double memory_per_byte = 4;
 
     bool has_extension(std::string_view extension) const;
@@ -100,9 +103,9 @@ struct Format {
 
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.
 std::string plain_extension(std::string_view extension);
-/// The extension that readers see, in that form: "xyz" of scan.xyz, and also of scan.xyz.gz.
+/// The extension that readers see, in the form of plain_extension(): "xyz" for scan.xyz and for scan.xyz.gz.
 std::string extension_of(const std::filesystem::path& path);
-/// The file's name without that extension, and without a `.gz` after it: "scan".
+/// The file's name without the extension and without a `.gz` after it: "scan".
 std::string stem_of(const std::filesystem::path& path);
 
 /// Every format, in the order of trials and lists: the built-in ones, then those of modules.
@@ -112,7 +115,7 @@ std::span<const Format> formats();
 std::vector<Format> module_formats();
 
 /// The format of a file: the first that is certain of its content, else that of its extension, else the first that
-/// finds the content plausible. Throws Error with the file's first bytes.
+/// finds the content plausible. Throws Error with the file's first bytes if no format matches.
 const Format& format_of(const FileBytes& file);
 
 }  // namespace scanmill

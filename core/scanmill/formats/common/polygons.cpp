@@ -61,8 +61,8 @@ void put_faces(TriangleMesh& mesh, const Column& faces, std::size_t vertices, co
         for (const Column& column : columns)
             if (column.is_list())
                 warn(on_warning,
-                     "the column '{}' has a list for every face: each triangle of a face that was cut has the whole "
-                     "list, whose values for corners do not fit the triangle's",
+                     "the column '{}' has a list for every face; each triangle of a face that was cut has the whole "
+                     "list, so values for corners do not fit the triangle",
                      column.name());
     }
     if (left_out > 0)

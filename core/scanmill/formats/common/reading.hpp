@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// For all readers: warnings, the file's name in messages, declarations in comments, and the finished LoadedFile.
+/// Helpers for all readers: warnings, the file's name in messages, declarations in comments, and the finished
+/// LoadedFile.
 
 #include <fmt/core.h>
 
@@ -21,7 +22,7 @@ void warn(const std::function<void(std::string)>& on_warning, fmt::format_string
 
 constexpr const char* truncated_hint = "the file is truncated or its header is wrong: fetch or export it again";
 
-/// The result of the action. An Error that it throws gets the file's name before its sentence.
+/// Returns the result of `action`. If `action` throws an Error, the file's name is put before its sentence.
 template <class Action>
 auto with_file_name(const std::filesystem::path& path, Action&& action) {
     try {
@@ -31,7 +32,8 @@ auto with_file_name(const std::filesystem::path& path, Action&& action) {
     }
 }
 
-/// Passes warnings on with the file's name before each. Empty when `on_warning` is, which must outlive the result.
+/// Returns a function that puts the file's name before a warning and passes it to `on_warning`. The function is empty
+/// if `on_warning` is empty. Pre: `on_warning` outlives the result.
 std::function<void(std::string)> warnings_with_file_name(const std::filesystem::path& path,
                                                          const std::function<void(std::string)>& on_warning);
 
@@ -41,31 +43,32 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// Removes blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// The text after `keyword` and a blank in a comment, without blanks around it; empty when the comment does not begin
-/// with them. For "unit", empty also for several words: a sentence that happens to begin with "unit".
+/// The text after `keyword` and a blank in a comment, without blanks around it. Empty if the comment does not begin
+/// with the keyword and a blank. Also empty for "unit" followed by several words, which is a sentence that happens to
+/// begin with "unit".
 std::string_view declaration_in(std::string_view comment, std::string_view keyword);
 
-/// The options' unit if known, else `declared`. Warns when they differ.
+/// The unit in the options if known, else `declared`. Warns if the two are known and differ.
 LengthUnit chosen_unit(LengthUnit declared, const ReadOptions& options);
 
-/// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit has precedence.
-/// Warns of unknown units.
+/// Unit and frame name as declared by lines "unit mm" and "frame NAME" among the comments; the unit in the options has
+/// precedence. Warns about unknown units.
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options);
 
 /// Length exponents of columns by name, as declared by comments "length-exponent N NAME".
 std::map<std::string, int, std::less<>> declared_exponents(const std::vector<std::string>& comments);
-/// The columns with their declared exponents.
+/// The columns with the length exponents that the comments declare.
 ColumnTable with_exponents(const ColumnTable& columns, const std::vector<std::string>& comments);
 
-/// Throws Error unless `count` elements can be numbered with 32 bits.
+/// Throws Error if 32 bits cannot number `count` elements.
 void require_countable(u64 count, std::string_view elements);
 
-/// Chooses frame.origin for the world positions of points (see distant_origin()) and makes them relative to it. `box`
-/// bounds them; it is computed when absent.
+/// Chooses frame.origin for the world positions of points (see distant_origin()) and makes the positions relative to
+/// it. `box` is the bounding box of the positions; it is computed if absent.
 void move_near_origin(Array<Vec3>& positions, Frame& frame, std::optional<BoundingBox> box = {});
 
-/// A reader's result with the frame that the comments declare: `mesh`, or a point cloud when it has no triangles, at
-/// these world positions. `box` bounds them; it is computed when absent.
+/// The result of a reader: `mesh` with these world positions, or a point cloud if `mesh` has no triangles. The comments
+/// declare the frame. `box` is the bounding box of the positions; it is computed if absent.
 LoadedFile loaded_file(std::string format, std::string encoding, std::vector<std::string> comments,
                        Array<Vec3> positions, TriangleMesh mesh, const ReadOptions& options,
                        std::optional<BoundingBox> box = {});

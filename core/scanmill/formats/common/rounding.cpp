@@ -11,13 +11,14 @@ namespace scanmill {
 
 namespace {
 
-/// The multiples of the largest power of ten within the given number of diagonals that are nearest to the middle, on
-/// the axes whose coordinates are distant. Zero for a box beyond the supported range.
+/// A shift to the middle of the box along the axes with distant coordinates. Its components are multiples of the
+/// largest power of ten that is at most `diagonals` diagonals. Zero for a box outside the supported range.
 Vec3 round_shift(const BoundingBox& world, double diagonals) {
     Vec3 shift = Vec3::Zero();
     const double diagonal = world.diagonal();
     if (!(diagonal >= least_side && diagonal <= 2 * largest_side)) return shift;
-    // The step is a power of ten or the reciprocal of one: both products with it are correctly rounded.
+    // The step is a power of ten. Below 1 it is stored as its reciprocal `parts`, so that all numbers are exact and the
+    // results below are correctly rounded.
     double step = 1, parts = 1;
     while (10 * step <= diagonals * diagonal) step *= 10;
     while (1 / parts > diagonals * diagonal) parts *= 10;
@@ -55,7 +56,7 @@ bool collapses(const TriangleMesh& mesh, const JoinedVertices& joined, const Tri
     return join(a, b) || join(b, c) || join(c, a);
 }
 
-/// Warns if the mesh is closed and these of its triangles, joined, are not.
+/// Warns if the mesh is closed, but `triangles` with joined vertices are not.
 void warn_opened(const TriangleMesh& mesh, const Buffer<Triangle>& triangles, const JoinedVertices& joined,
                  std::string_view format, const WriteOptions& options) {
     if (!topology(mesh).closed) return;
@@ -68,8 +69,9 @@ void warn_opened(const TriangleMesh& mesh, const Buffer<Triangle>& triangles, co
     const MeshTopology found = topology(in_file);
     if (found.closed) return;
     std::string sentence = fmt::format(
-        "the mesh is closed and the {0} file is not: {0} joins {1} at equal positions, which leaves {2}, {3} in three "
-        "or more triangles, {4} of opposed triangles and {5} of several fans; PLY keeps the mesh closed",
+        "the mesh is closed, but the {0} file is not: {0} joins {1} at equal positions, and the file then has {2}, {3} "
+        "in three or more triangles, {4} between triangles of opposite orientation and {5} with several fans; PLY "
+        "keeps the mesh closed",
         format, count_text(joined.rounded + joined.equal, "vertex", "vertices"),
         count_text(found.boundary_edges, "boundary edge", "boundary edges"),
         count_text(found.nonmanifold_edges, "edge", "edges"), count_text(found.misoriented_edges, "edge", "edges"),
@@ -106,7 +108,7 @@ JoinedVertices joined_vertices(const TriangleMesh& mesh, const std::function<Vec
     PositionMerger merger(vertices);
     JoinedVertices joined;
     joined.numbers.resize(vertices);
-    Array<u32> firsts;  // vertices, by number
+    Array<u32> firsts;  // the first vertex with each number
     for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
         const u32 number = merger.add(written(vertex));
         joined.numbers[vertex] = number;

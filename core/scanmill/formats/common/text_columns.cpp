@@ -29,7 +29,7 @@ std::vector<std::string> split_names(std::string_view line) {
         std::string_view name = trimmed(line.substr(0, end));
         if (name.size() >= 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front())
             name = trimmed(name.substr(1, name.size() - 2));
-        // Several blanks separate like one.
+        // Several blanks separate like a single blank.
         if (separator != ' ' || end > 0)
             names.push_back(name.empty() ? "c" + std::to_string(names.size() + 1) : std::string(name));
         line.remove_prefix(std::min(end + 1, line.size()));
@@ -37,7 +37,7 @@ std::vector<std::string> split_names(std::string_view line) {
     return names;
 }
 
-/// Lower case, without separators between the words of a name.
+/// The name in lower case, without separators between its words.
 std::string plain(std::string_view name) {
     std::string text;
     for (const char c : name)
@@ -115,7 +115,7 @@ private:
             const auto is_decimal = [&](std::string_view token) { return number_with_decimal_comma(token, ignored); };
             if (std::ranges::any_of(tokens, is_number)) return false;
             if (text_.has_decimal_commas() && std::ranges::any_of(tokens, is_decimal)) return false;
-            throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z, each once",
+            throw Error("line {}: {} is neither a row of numbers nor a row of names with x, y and z once each",
                         text_.line(), quote(tokens.front()))
                 .hint(
                     "if it is a title, remove the line or begin it with #; if it has names, call three of them x, y "
@@ -127,7 +127,7 @@ private:
         return true;
     }
 
-    /// "//X Y Z Intensity" and "# x y z nx ny nz" are comments to most programs and names to some.
+    /// Most programs treat "//X Y Z Intensity" and "# x y z nx ny nz" as comments, some as names.
     void read_names_in_comments() {
         for (const std::string& comment : std::views::reverse(text_.comments().texts())) {
             std::vector<std::string> names = split_names(comment);
@@ -146,7 +146,7 @@ private:
     TextLayout layout_;
 };
 
-/// Columns of one number each, some of which become the components of one column.
+/// Columns of one number each. Several columns can be united into one column with several components.
 class TextTable {
 public:
     TextTable(std::vector<std::string> names, std::vector<Array<double>> values,
@@ -175,7 +175,7 @@ public:
             are_bytes = are_bytes && std::ranges::all_of(values(part), is_byte);
             for (const double value : values(part)) highest = std::max(highest, value);
         }
-        // When the highest number is 1, it may be the faintest channel or the full one.
+        // If the highest number is 1, it may be the byte 1 or a full channel.
         if (are_bytes && highest != 1) return unite<u8>("colour", parts);
         warn(on_warning_, "the columns {} are not colours of whole numbers from 0 to 255; they are kept as they are",
              list(parts));
@@ -197,7 +197,7 @@ private:
         return fmt::format("{}", fmt::join(parts | std::views::transform(name), ", "));
     }
 
-    /// Replaces the first of the parts with a column of all of them, and removes the others.
+    /// Replaces the first of the columns `parts` with a column of all parts, and removes the other parts.
     template <class T>
     void unite(const char* name, const Indices& parts) {
         const std::size_t width = parts.size(), rows = columns_[parts[0]]->rows();

@@ -2,10 +2,10 @@
 #pragma once
 /// Tables of numbers as text: their header, the names of their columns, and the columns after x, y and z.
 ///
-/// A line of names is split at semicolons when it has some, else at the first of commas, bars, tabs, blanks that it
-/// has. Quotes and blanks around a name and one separator after the last do not count. An empty name becomes the number
-/// of its column: c4. Upper and lower case, `_`, `-`, `.` and blanks make no difference: Nx and n.x are one name,
-/// normal_x and NormalX another.
+/// A line of names is split at semicolons if it has any, else at commas, else at bars, else at tabs, else at blanks.
+/// Quotes and blanks around a name are ignored, and so is one separator after the last name. An empty name becomes the
+/// number of its column: c4. Case, `_`, `-`, `.` and blanks make no difference: Nx and n.x are the same name, and so
+/// are normal_x and NormalX.
 
 #include <optional>
 
@@ -19,7 +19,7 @@ constexpr TextRules text_rules{.commas = true, .comment = '#', .slashes = true};
 /// The same for numbers with decimal commas: blanks, tabs, semicolons and bars separate.
 constexpr TextRules decimal_comma_rules{.commas = true, .decimal_commas = true, .comment = '#', .slashes = true};
 
-/// Thrown for a text that must be read with decimal_comma_rules, at the first row that shows it.
+/// Thrown for a text that must be read with decimal_comma_rules. `line` is the line of the first row that shows this.
 struct DecimalCommas {
     std::size_t line;
 };
@@ -35,31 +35,33 @@ struct TextLayout {
     std::vector<std::string> names;
     std::size_t width = 0;  ///< numbers per row, at least 3
     std::array<std::size_t, 3> axes{0, 1, 2};  ///< the columns of x, y, z
-    /// A comment with the names x, y and z but without a name for every column; empty when there is none.
+    /// A comment that contains the names x, y and z, but cannot name the columns; empty if there is none.
     std::string ignored_names;
 };
 
-/// Moves the cursor from the text's beginning to the first row of numbers. Names are taken from a row before it or else
-/// from the last comment before it that names x, y, z and every column. Throws Error with the line: no row, fewer than
-/// three columns, names without x, y and z or not one for each column. Throws DecimalCommas.
+/// Moves the cursor from the text's beginning to the first row of numbers. Names are taken from a row before it, else
+/// from the last comment before it that names x, y, z and every column.
+///
+/// Throws Error with the line if there is no row, if there are fewer than three columns, or if a row of names does not
+/// contain x, y and z and one name per column. Throws DecimalCommas for a text with decimal commas.
 TextLayout read_text_layout(TextCursor& text);
 
-/// Whether all remaining tokens of the cursor's row are numbers; does not move it.
+/// Whether all remaining tokens of the cursor's row are numbers. The caller's cursor does not move.
 bool is_row_of_numbers(TextCursor row);
 
 /// Columns from the numbers after x, y and z.
 ///
-/// With names: nx ny nz or normal x, y, z become `normal` (float64), with a warning unless all have unit length; r g b
-/// or red green blue, optionally with a or alpha, become `colour` (uint8) when every number is whole, from 0 to 255,
-/// and not all are 0 or 1 (1 may be the faintest or the full channel), else they stay single columns, with a warning.
-/// Every other column keeps its name (float64).
+/// With names: nx ny nz or normal x, y, z become `normal` (float64), with a warning unless all have unit length. r g b
+/// or red green blue, optionally with a or alpha, become `colour` (uint8) if every number is whole and from 0 to 255.
+/// If the highest number is 1, the colours stay single columns, with a warning, because 1 may be the byte 1 or a full
+/// channel. So do colours that are not bytes. Every other column keeps its name (float64).
 ///
-/// Without names: three columns are `normal` when every row that is not zero has unit length within a tenth. In Leica's
-/// PTS layout one column is `intensity`, four are `intensity` and `colour`, three that are not normals are `colour`,
-/// under the same condition. Other columns are numbered from c4.
+/// Without names: three columns are `normal` if every row that is not zero has unit length within a tenth. In Leica's
+/// PTS layout one column is `intensity`, and four are `intensity` and `colour`. Three columns that are not normals are
+/// `colour` there, if they are bytes as above. Other columns are numbered from c4.
 ///
-/// Pre: `values` are of equal length; `names` is empty or has one for each. Throws Error when two columns have the same
-/// name.
+/// Pre: `values` have equal lengths; `names` is empty or has one name for each. Throws Error if two columns have the
+/// same name.
 ColumnTable text_columns(std::vector<std::string> names, std::vector<Array<double>> values, bool is_pts,
                          const std::function<void(std::string)>& on_warning);
 

@@ -31,7 +31,7 @@ bool TextCursor::next_row() {
 
 std::string_view TextCursor::token() {
     const char* const begin = at_;
-    // The first character always belongs to the token: a continuation sign inside a line begins one.
+    // The first character always belongs to the token, because a continuation sign inside a line begins a token.
     if (at_ != end_) ++at_;
     while (at_ != end_ && !ends_token(at_)) ++at_;
     return {begin, at_};

@@ -2,10 +2,10 @@
 #pragma once
 /// Reads a text of numbers row by row and token by token, counts its lines and collects its comments.
 ///
-/// A row is a line that holds at least one token; blank lines and comments are skipped. Lines end with LF, CRLF or CR;
-/// where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
-/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars.
-/// Numbers are read independently of the locale, in every spelling of nan and inf that parse_number() accepts. Nothing
+/// A row is a line with at least one token; blank lines and comments are skipped. Lines end with LF, CRLF or CR. If the
+/// format allows it, a continuation sign right before the line's end joins the next line to the row; in a comment the
+/// sign is text. Blanks and tabs separate tokens, and, if the format allows it, also commas, semicolons and bars.
+/// Numbers are read independently of the locale, in every spelling of nan and inf that parse_number() accepts. No text
 /// is copied.
 
 #include <array>
@@ -21,13 +21,13 @@
 
 namespace scanmill {
 
-/// Comments in bounded memory: a file may have a comment in every other line.
+/// Keeps comments in bounded memory, because a file may have a comment in every other line.
 class KeptComments {
 public:
     void add(std::string_view comment);
     /// Adds the comments of the text that follows.
     void append(const KeptComments& following);
-    /// The first 1000 comments, and of the others those that declare a unit or a frame (see declared_frame()).
+    /// The first 1000 comments, and every later comment that declares a unit or a frame (see declared_frame()).
     const std::vector<std::string>& texts() const { return texts_; }
 
 private:
@@ -36,17 +36,17 @@ private:
 
 struct TextRules {
     bool commas = false;  ///< commas, semicolons and bars separate as well
-    bool decimal_commas = false;  ///< commas do not separate: numbers have them instead of points
-    char comment = '\0';  ///< begins a comment that lasts until the line's end; none when zero
+    bool decimal_commas = false;  ///< numbers have commas instead of points; commas do not separate
+    char comment = '\0';  ///< begins a comment that lasts until the line's end; zero: no such comments
     bool slashes = false;  ///< two slashes at the beginning of a token begin a comment as well
-    char continuation = '\0';  ///< joins two lines when it is the last character of the first; none when zero
+    char continuation = '\0';  ///< joins two lines if it is the last character of the first; zero: none
     std::size_t line = 1;  ///< number of the first line
 };
 
-/// The number that a token spells: as parse_number(), and infinity and NaN as Microsoft's libraries printed them until
-/// 2015: 1.#INF, -1.#IND.
+/// Reads the number that a token spells, like parse_number(). Also accepts infinity and NaN as Microsoft's libraries
+/// printed them until 2015: 1.#INF, -1.#IND. Returns false for other tokens.
 bool number_of_token(std::string_view token, double& value);
-/// The same for a text whose numbers have decimal commas: between two digits, at most one. A point is not accepted.
+/// The same for a number with a decimal comma: at most one comma, between two digits. A point is not accepted.
 bool number_with_decimal_comma(std::string_view token, double& value);
 
 class TextCursor {
@@ -66,23 +66,23 @@ public:
     bool more();
     /// The next token of this row. Pre: more().
     std::string_view token();
-    /// The next token of this row as a number; false, consuming it, when it is not a number of the type. Whole numbers
-    /// may be written as 3.0 or +3. Pre: more().
+    /// Reads the next token of this row as a number. Returns false if the token is not a number of the type; the token
+    /// is then consumed, too. Whole numbers may be written as 3.0 or +3. Pre: more().
     template <class Number>
     bool number(Number& value);
     /// The token that number() just refused.
     std::string_view last_token() const { return last_token_; }
     /// Makes `tail`, the end of the token just read, the next token.
     void put_back(std::string_view tail) { at_ = tail.data(); }
-    /// Whether the row, as far as it was read, has different separators, such as commas and blanks: "1,5 2,5 3" may
+    /// Whether the part of the row that was read has different separators, such as commas and blanks: "1,5 2,5 3" may
     /// mean three numbers or five.
     bool mixes_separators() const { return (gaps_ & any_gap & ((gaps_ & any_gap) - 1)) != 0; }
     bool has_decimal_commas() const { return rules_.decimal_commas; }
     /// Whether commas separate tokens in the part of the row that was read.
     bool has_commas() const { return (gaps_ & comma_gap) != 0; }
-    /// Whether the row, as far as it was read, has a comma, semicolon or bar without a number before it.
+    /// Whether the part of the row that was read has a comma, semicolon or bar without a number before it.
     bool has_empty_field() const { return gaps_ & empty_field; }
-    /// Tokens left in this row; does not move.
+    /// The number of tokens left in this row. Does not move the cursor.
     std::size_t count_tokens() const;
 
     /// The text that was not read yet.
@@ -174,7 +174,7 @@ bool TextCursor::number(Number& value) {
     last_token_ = token();
     if (!(rules_.decimal_commas ? number_with_decimal_comma : number_of_token)(last_token_, wide)) return false;
     if constexpr (std::is_integral_v<Number>) {
-        // The largest integer may round up as a double: compare with its successor, which is exact.
+        // The largest integer may round up as a double, so the number is compared with its successor, which is exact.
         constexpr double low = static_cast<double>(std::numeric_limits<Number>::min());
         const double beyond = std::ldexp(1.0, std::numeric_limits<Number>::digits);
         if (!(wide >= low && wide < beyond) || wide != std::trunc(wide)) return false;
@@ -183,8 +183,8 @@ bool TextCursor::number(Number& value) {
     return true;
 }
 
-/// The next number of the row. Throws Error with the line when the row has ended or the token is not a number of the
-/// type; `purpose`, formatted with the arguments, describes the number there: "the normal of vertex 5".
+/// The next number of the row. Throws Error with the line if the row has ended or the token is not a number of the
+/// type. `purpose`, formatted with the arguments, describes the number in the message: "the normal of vertex 5".
 template <class Number = double, class... Arguments>
 Number next_number(TextCursor& text, fmt::format_string<Arguments...> purpose, Arguments&&... arguments) {
     const auto described = [&] { return fmt::format(purpose, std::forward<Arguments>(arguments)...); };

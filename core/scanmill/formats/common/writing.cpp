@@ -20,8 +20,9 @@ double rounding_error(double origin, double position) {
     return (origin - (sum - part)) + (position - part);
 }
 
-/// The length of the UTF-8 character that the text begins with; 0 for a control character and when it is invalid
-/// (RFC 3629: the shortest form only, no surrogates, nothing above U+10FFFF; XML refuses U+FFFE and U+FFFF).
+/// The length in bytes of the UTF-8 character at the beginning of the text; 0 for control characters and invalid
+/// characters. RFC 3629 allows the shortest form only, no surrogates and nothing above U+10FFFF. XML also refuses
+/// U+FFFE and U+FFFF.
 std::size_t character_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const unsigned first = byte(0);

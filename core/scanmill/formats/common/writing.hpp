@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// For all writers: world coordinates and their precision, warnings about data that a format cannot carry, names of
-/// columns, and numbers as text.
+/// Helpers for all writers: world coordinates and their precision, warnings about data that a format cannot carry,
+/// names of columns, and numbers as text.
 
 #include <set>
 #include <span>
@@ -15,11 +15,11 @@ namespace scanmill {
 /// frame.origin + position, rounded once to double.
 inline Vec3 world(const Frame& frame, const Vec3& position) { return frame.origin + position; }
 
-/// Whether every world coordinate is exactly a float. NaN and infinities are.
+/// Whether floats hold every world coordinate exactly. NaN and infinities count as exact.
 bool all_floats(const Frame& frame, std::span<const Vec3> positions);
 
-/// Warns when writing world coordinates, as float or as double, moves some by more than a millionth of the diagonal.
-/// Throws Error when a finite coordinate would become infinite.
+/// Warns if writing world coordinates as float or double moves a coordinate by more than a millionth of the diagonal.
+/// Throws Error if a finite coordinate would become infinite.
 void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
                          const WriteOptions& options);
 
@@ -28,7 +28,7 @@ void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
 void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept = {});
 
-/// Warns of everything in a mesh that a format for plain triangles leaves out: the columns except those kept, edges
+/// Warns about everything in a mesh that a format for plain triangles leaves out: the columns except those kept, edges
 /// with columns, and sharp edges.
 void warn_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
                          std::span<const std::string_view> kept_of_vertices = {},
@@ -37,29 +37,30 @@ void warn_bare_triangles(const TriangleMesh& mesh, std::string_view format, cons
 /// The mesh without vertices that no triangle uses, with a warning that counts them.
 TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
 
-/// A frame's name as one line of a comment, equal to what a reader finds there: control characters become blanks, and
-/// blanks around it are removed.
+/// A frame's name as one line of a comment, in the form that a reader returns. Control characters become blanks; blanks
+/// around the name are removed.
 std::string one_line(std::string_view name);
 
 /// "length-exponent 1 bin-size", which declared_exponents() reads; empty for a column whose exponent is 0.
 std::string exponent_comment(const Column& column);
 
-/// "# unit mm" and "# frame NAME", each on its line, unless unknown or empty; `prefix` begins each line.
+/// The lines "# unit mm" and "# frame NAME", without a line for an unknown unit or an empty name. `prefix` begins each
+/// line.
 std::string comment_lines(const Frame& frame, std::string_view prefix = "# ");
 
-/// The text as valid UTF-8 without control characters, which JSON and XML need: every other byte becomes '_'.
+/// The text as valid UTF-8 without control characters, as JSON and XML need it. Every other byte becomes '_'.
 std::string valid_text(std::string_view text);
 /// The text with XML's entities for &, <, > and ".
 std::string xml_escaped(std::string_view text);
 
-/// Names of columns in a format that allows fewer names than we do: makes them distinct and warns of changed ones.
+/// Chooses distinct names of columns for a format that does not allow every name. Warns about changed names.
 class WrittenNames {
 public:
-    /// `taken` are names that mean something else in the format. The options must outlive this.
+    /// `taken` are names that mean something else in the format. The options must outlive this object.
     WrittenNames(std::string_view format, const WriteOptions& options, std::set<std::string> taken = {});
 
-    /// `wanted`, with "_2" appended until it is a new name. Warns when that is not `expected`, the name that the
-    /// format's page documents.
+    /// Returns `wanted`, with "_2" appended until the name is new. Warns if the result differs from `expected`, the
+    /// name that the format's page documents.
     std::string add(std::string_view column, std::string wanted, std::string_view expected);
     std::string add(std::string_view column, std::string wanted) { return add(column, std::move(wanted), column); }
 
@@ -73,11 +74,11 @@ private:
 struct TextColumns {
     explicit TextColumns(const ColumnTable& columns);
 
-    const Column* normal;   ///< 3 × float32 or float64
-    const Column* colour;   ///< 3 or 4 × uint8
+    const Column* normal;  ///< 3 × float32 or float64
+    const Column* colour;  ///< 3 or 4 × uint8
     const Column* texture;  ///< 2 × float32 or float64
 
-    /// The names of those that are present, for warn_left_out().
+    /// The names of the columns that are present, for warn_left_out().
     std::vector<std::string_view> names() const;
 };
 

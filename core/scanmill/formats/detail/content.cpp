@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view gzip_magic = "\x1f\x8b";
 constexpr std::string_view little_mark = "\xff\xfe", big_mark = "\xfe\xff";
 
-/// zlib's decoder of one gzip member after the other.
+/// Decodes the members of a gzip file one after the other, with zlib.
 class Inflater {
 public:
     explicit Inflater(std::string_view input) : input_(input) {
@@ -32,14 +32,14 @@ public:
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 
-    /// Writes up to room.size() bytes of content into `room`; returns their number, smaller only at the end. Throws
-    /// Error for invalid or truncated data.
+    /// Writes up to room.size() bytes of content into `room`. Returns their number, which is less than room.size() only
+    /// at the end. Throws Error for invalid or truncated data.
     std::size_t read(std::span<char> room) {
         std::size_t filled = 0;
         while (filled < room.size() && !is_at_end_) filled += step(room.subspan(filled));
         return filled;
     }
-    /// After the end: the bytes that follow the last member.
+    /// The bytes after the last member. Pre: all content has been read.
     std::string_view rest() const { return input_; }
 
 private:
@@ -69,7 +69,7 @@ private:
         return filled;
     }
 
-    /// What follows a member and does not begin another one is ignored, as by gunzip.
+    /// Bytes after a member are ignored if they do not begin another member, as gunzip does.
     void next_member() {
         is_at_end_ = !input_.starts_with(gzip_magic);
         if (!is_at_end_) ::inflateReset(&stream_);
@@ -130,7 +130,7 @@ Array<char> utf8_of(std::string_view utf16) {
          *out = text.data();  // iconv does not write to `in`
     std::size_t in_left = utf16.size() - little_mark.size(), out_left = text.size();
     while (::iconv(converter, &in, &in_left, &out, &out_left) == std::size_t(-1)) {
-        // An unpaired surrogate.
+        // The next two bytes are an unpaired surrogate.
         in += 2;
         in_left -= 2;
         *out++ = '?';

@@ -75,7 +75,8 @@ private:
         cloud_.frame.origin = distant_origin(robust_box({begin, read}, box).robust);
     }
 
-    /// The offset is moved to the origin before the integers are added: near zero a double resolves the smallest step.
+    /// The origin is subtracted from the offset before the integers are added, because near zero a double resolves the
+    /// smallest step.
     void read_positions() {
         const Vec3 near_offset = header_.offset - cloud_.frame.origin;
         Array<Vec3> positions(header_.points);
@@ -85,8 +86,8 @@ private:
         cloud_.positions = std::move(positions);
     }
 
-    /// Converts `width` numbers of type Source at `offset` of each point, with their component, and passes all results
-    /// to `finish` in one array.
+    /// Declares a field of `width` numbers of type Source at byte `offset` of each point. convert(number, component)
+    /// converts each number; `finish` receives all results in one array.
     template <class Source, class Width, class Convert, class Finish>
     void declare(std::size_t offset, Width width, Convert convert, Finish finish) {
         using Target = decltype(convert(Source{}, std::size_t(0)));
@@ -106,7 +107,7 @@ private:
         declare<Source>(offset, One(), unchanged, [=, this](Array<Source> values) { add(name, 1, std::move(values)); });
     }
 
-    /// Some bits of a byte; no column when it is a flag that no point has.
+    /// Declares a column of some bits of a byte. A flag that is not set in any point gives no column.
     void declare_bits(const char* name, std::size_t offset, u32 shift, u32 bits, bool is_flag = false) {
         const auto extract = [=](u8 byte, std::size_t) { return static_cast<u8>(byte >> shift & ((1u << bits) - 1)); };
         declare<u8>(offset, One(), extract, [=, this](Array<u8> values) {
@@ -127,7 +128,7 @@ private:
         columns_.add(Column(std::move(name), components, Buffer(std::move(values))));
     }
 
-    /// Returns the offset after these fields.
+    /// Declares the fields of point formats 0 to 5. Returns the offset after these fields.
     std::size_t declare_old_fields() {
         declare<std::uint16_t>("intensity", 12);
         declare_bits("return_number", 14, 0, 3);
@@ -207,7 +208,7 @@ private:
             declare<Source>(extra.offset, extra.components, unchanged, finish);
     }
 
-    /// The name, with a number when it is empty or a column has it.
+    /// The wanted name, with a number appended if it is empty or if a column has this name.
     std::string free_name(const std::string& wanted) {
         std::string name = wanted.empty() ? "extra" : wanted;
         if (!columns_.find(name) && !wanted.empty()) return name;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<std::size_t, 11> point_sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
-/// A text field of fixed width: up to the first zero, without trailing blanks, unprintable characters as '?'.
+/// A text field of fixed width, up to the first zero and without trailing blanks. Unprintable characters become '?'.
 std::string text_at(std::string_view bytes, std::size_t begin, std::size_t width) {
     std::string text;
     for (const char c : bytes.substr(begin, width)) {
@@ -50,12 +50,12 @@ void require_valid(const LasHeader& header, std::string_view bytes) {
 
 constexpr std::size_t description_size = 192;
 
-/// Types 1 to 10 of LAS; 11 to 20 are two of each, 21 to 30 three.
+/// Types 1 to 10 of LAS. Types 11 to 20 are pairs of these types, types 21 to 30 triples.
 constexpr std::array<ScalarType, 10> types{
     ScalarType::uint8, ScalarType::int8,   ScalarType::uint16, ScalarType::int16,   ScalarType::uint32,
     ScalarType::int32, ScalarType::uint64, ScalarType::int64,  ScalarType::float32, ScalarType::float64};
 
-/// Pre: the type is one of the thirty.
+/// The extra bytes of a description, without their offset. Pre: `type` is from 1 to 30.
 LasExtra described(std::string_view description, u32 type) {
     constexpr u32 scale_bit = 8, shift_bit = 16;
     LasExtra extra;
@@ -115,7 +115,8 @@ LasHeader read_las_header(std::string_view bytes) {
     header.offset = vector_at(at + 155);
     if (header.minor_version >= 4) {
         header.extended_records = little_endian<u32>(at + 243);
-        // With many points the old field of 32 bits is zero; some programs write only the old field.
+        // The old field of 32 bits is zero if it cannot hold the number of points. Some programs write only the old
+        // field.
         if (const u64 points = little_endian<u64>(at + 247); points > 0) header.points = points;
     }
     require_valid(header, bytes);
@@ -162,7 +163,8 @@ LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& op
     u32 model = 0, unit = 0, height = 0;
     for (const LasRecord& record : records) {
         if (!holds_geo_keys(record)) continue;
-        // Four numbers of 16 bits each: key, where its value is (0: here), how many, the value.
+        // Every entry has four numbers of 16 bits: the key, the location of its value (0: in this entry), the number of
+        // values and the value.
         for (std::size_t at = 8; at + 8 <= record.content.size(); at += 8) {
             const auto number = [&](std::size_t i) -> u32 {
                 return little_endian<std::uint16_t>(record.content.data() + at + 2 * i);

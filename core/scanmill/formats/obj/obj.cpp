@@ -22,7 +22,7 @@ struct Corner {
     std::int64_t vertex = 0, texture = 0, normal = 0;
 };
 
-/// "7", "7/5", "7//3", "7/5/3"; also "7/" and "7//", which some programs write. Empty for other tokens.
+/// Parses "7", "7/5", "7//3", "7/5/3"; also "7/" and "7//", which some programs write. nullopt for other tokens.
 std::optional<Corner> parse_corner(std::string_view token) {
     Corner corner;
     const char* at = token.data();
@@ -43,7 +43,8 @@ std::optional<Corner> parse_corner(std::string_view token) {
     return corner;
 }
 
-/// The subject of a row, by the keyword that it begins with. `shape` is read; the others are left out.
+/// The subject of a row, by the keyword that it begins with. Rows with the subject `shape` are read; other rows are
+/// left out.
 enum class Subject { shape, object, group, material, smoothing, library, line, point, free_form, display, unknown };
 
 /// The keywords of each subject: those of the manual and those of older versions that it lists.
@@ -66,7 +67,7 @@ Subject subject_of(std::string_view keyword) {
     return static_cast<Subject>(std::ranges::find_if(keywords_of, has_word) - keywords_of.begin());
 }
 
-/// The rest of the row: a name, which may have several words or none.
+/// The rest of the row: a name of several words, one word or none.
 std::string_view rest_of_row(TextCursor& text) {
     if (!text.more()) return {};
     const std::string_view first = text.token();
@@ -75,10 +76,10 @@ std::string_view rest_of_row(TextCursor& text) {
     return {first.data(), last.data() + last.size()};
 }
 
-/// Counts the rows that define neither a vertex nor a face, and warns of them.
+/// Counts the rows that are not read, and warns about them.
 class LeftOut {
 public:
-    /// Counts the row whose keyword was just read, and reads its name. The text must outlive this.
+    /// Counts the row whose keyword was just read, and reads its name. The text must outlive this object.
     void add_row(std::string_view keyword, TextCursor& text) {
         constexpr std::size_t most_keywords = 4;
         const Subject subject = subject_of(keyword);
@@ -93,8 +94,8 @@ public:
         }
     }
 
-    /// One warning for each subject. Objects, groups, materials and smoothing groups only divide the mesh: a single one
-    /// of its kind needs no warning.
+    /// Warns once for each subject. Objects, groups, materials and smoothing groups only divide the mesh, so there is
+    /// no warning about a single object, group, material or smoothing group.
     void warn_all(const std::function<void(std::string)>& on_warning) const {
         constexpr std::array<std::pair<Subject, std::string_view>, 4> divisions{
             {{Subject::object, "objects (o)"},
@@ -128,8 +129,8 @@ public:
                      fmt::join(rows.keywords | std::views::transform(quote), ", "));
     }
 
-    /// "; line 1 begins with 'solid', which is not an OBJ keyword" when there is such a row, for a file without
-    /// vertices.
+    /// "; line 1 begins with 'solid', which is not an OBJ keyword", for the message about a file without vertices.
+    /// Empty if there is no such row.
     std::string first_unknown() const {
         const Rows& rows = of(Subject::unknown);
         if (rows.count == 0) return {};
@@ -155,7 +156,7 @@ public:
     ObjReader(const FileBytes& file, const ReadOptions& options)
         : options_(options),
           text_(without_byte_order_mark(file.bytes), rules) {
-        // Usual bytes and corners per vertex, with two faces for each.
+        // The usual numbers of bytes and corners per vertex, with two faces for each vertex.
         constexpr std::size_t usual_text = 64, usual_corners = 6;
         const std::size_t guess = file.bytes.size() / usual_text;
         positions_.reserve(guess);
@@ -203,7 +204,7 @@ private:
         skip_rest();
     }
 
-    /// Counts the row when it has superfluous numbers.
+    /// Counts the row if it has superfluous numbers.
     void skip_rest() {
         if (text_.more() && overlong_++ == 0) first_overlong_ = text_.line();
     }
@@ -226,7 +227,7 @@ private:
             const auto index = static_cast<u64>(spelled) - 1;
             if (index >= count && (ahead_.empty() || index > ahead_.back().index))
                 ahead_.push_back({index, text_.line()});
-            return static_cast<u32>(index);  // one beyond 32 bits is missing, and refused at the end
+            return static_cast<u32>(index);  // an index beyond 32 bits is missing, and refused at the end
         }
         if (spelled == 0) throw Error("line {}: a face names vertex 0; vertices are numbered from 1", text_.line());
         if (static_cast<u64>(-(spelled + 1)) >= count)
@@ -238,7 +239,7 @@ private:
     void require_vertices() const {
         if (positions_.empty()) throw Error("holds no points: no row is a vertex (v){}", left_out_.first_unknown());
         require_countable(positions_.size(), "vertices");
-        // `ahead_` holds every index that was larger than all before it, so it holds the first missing one.
+        // `ahead_` contains every index that is larger than all indices before it, and so the first missing index.
         for (const Ahead& ahead : ahead_)
             if (ahead.index >= positions_.size())
                 throw Error("line {}: a face names vertex {}; there {} {}, numbered from 1", ahead.line,
@@ -275,7 +276,7 @@ private:
         return loaded_file("OBJ", "ascii", text_.comments().texts(), std::move(positions_), std::move(mesh), options_);
     }
 
-    /// A vertex that a face refers to before its row.
+    /// The index of a vertex that a face refers to before the vertex's own row.
     struct Ahead {
         u64 index;
         std::size_t line;
@@ -286,7 +287,7 @@ private:
     Array<Vec3> positions_;
     Array<u32> corners_;  // the vertex of each corner
     Array<u64> offsets_;  // the first index in corners_ of each face, and the end
-    std::vector<Ahead> ahead_;  // each is larger than all before it
+    std::vector<Ahead> ahead_;  // with ascending indices
     CornerValues normals_{"normal", "normals (vn)", 3};
     CornerValues textures_{"texture", "texture coordinates (vt)", 2};
     RowColours colours_{RowColours::Bytes::fractions};
@@ -296,7 +297,7 @@ private:
 };
 
 Recognition recognise(std::string_view head, u64 file_size) {
-    // The last line may be cut.
+    // The last line may be incomplete.
     if (head.size() < file_size) head = head.substr(0, head.find_last_of("\r\n") + 1);
     TextCursor text(without_byte_order_mark(head), rules);
     Recognition recognition = Recognition::no;
@@ -315,7 +316,8 @@ Recognition recognise(std::string_view head, u64 file_size) {
 
 LoadedFile read(const FileBytes& file, const ReadOptions& options) { return ObjReader(file, options).read(); }
 
-/// A fourth channel would keep many programs from reading the vertex at all.
+/// Warns about lost opacity. It is not written, because many programs do not read a vertex with a fourth channel at
+/// all.
 void warn_lost_opacity(const Column& colour, const WriteOptions& options) {
     if (colour.components() != 4) return;
     const auto channels = colour.values<u8>();
@@ -339,7 +341,7 @@ void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TextColumns columns(mesh.vertex_columns);
     warn_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
     std::vector<std::string_view> kept = columns.names();
-    // Colours that are not bytes, as they were read.
+    // The channels of colours that are not bytes; the reader keeps them as such columns.
     std::vector<const Column*> channels;
     for (const char* name : {"red", "green", "blue"})
         if (const Column* column = mesh.vertex_columns.find(name); column && has_floats(*column, 1))

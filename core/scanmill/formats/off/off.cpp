@@ -13,7 +13,7 @@ struct Keyword {
     bool texture = false, colour = false, normal = false;
 };
 
-/// The prefixes of a keyword such as "STCNOFF"; empty for another word.
+/// The prefixes of a keyword such as "STCNOFF"; nullopt for other words.
 std::optional<Keyword> keyword_of(std::string_view word) {
     Keyword keyword;
     const auto remove = [&word](std::string_view prefix) {
@@ -33,7 +33,7 @@ bool is_refused_keyword(std::string_view word) {
            word.find_first_not_of("STCN4nOF") == std::string_view::npos;
 }
 
-/// "OFF8 6 12" → 3: the keyword's length when a count follows without a blank, as some programs write it; else 0.
+/// "OFF8 6 12" → 3: the length of the keyword if a count follows without a blank, as some programs write it; else 0.
 std::size_t glued_keyword(std::string_view word) {
     return word.starts_with("OFF") && word.size() > 3 && word[3] >= '0' && word[3] <= '9' ? 3 : 0;
 }
@@ -70,7 +70,7 @@ private:
         } else if (const std::size_t length = glued_keyword(word)) {
             text_.put_back(word.substr(length));
         } else {
-            text_.put_back(word);  // the keyword may be missing: then these are the counts
+            text_.put_back(word);  // the keyword is missing: this may be the first count
         }
     }
 
@@ -85,7 +85,7 @@ private:
         }
         if (vertices_ == 0) throw Error("holds no points: line {} declares 0 vertices", text_.line());
         require_countable(vertices_, "vertices");
-        // A vertex takes at least "0 0 0" and a line end, a face "3 0 0 0"; a face of one corner is "1 0".
+        // The shortest row of a vertex is "0 0 0" and a line end, the shortest row of a face "0" and a line end.
         constexpr u64 least_vertex = 6, least_face = 2;
         if (vertices_ > bytes_.size() / least_vertex || faces_ > bytes_.size() / least_face)
             throw Error("line {} promises {} and {}; the file has only {}", text_.line(),

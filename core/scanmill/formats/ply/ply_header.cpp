@@ -8,7 +8,7 @@ namespace scanmill {
 
 namespace {
 
-/// Removes the first word from the line.
+/// Removes and returns the first word of the line.
 std::string_view word(std::string_view& line) {
     line = trimmed(line);
     const std::string_view found = line.substr(0, line.find_first_of(" \t\r"));
@@ -156,7 +156,8 @@ PlyHeader parse_ply_header(std::string_view file) { return HeaderParser(file).pa
 
 void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t left) {
     const bool is_text = encoding == PlyEncoding::ascii;
-    // Least size of a row. Binary: the scalars and the lengths of empty lists; text: a digit and a separator for each.
+    // The least size of a row. A binary row has the scalars and the lengths of empty lists; a row of text has a digit
+    // and a separator for each property.
     u64 row = 0;
     for (const PlyProperty& property : element.properties)
         row += is_text ? 2 : size_of(property.count_type.value_or(property.type));

@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// The number in the comment "num_cols N", as the scans of the Stanford repository have it; 0 without one.
+    /// The number in the comment "num_cols N", which the scans of the Stanford repository have; 0 without this comment.
     std::size_t grid_columns() const {
         for (const std::string& comment : header_.comments) {
             TextCursor text(comment);
@@ -127,7 +127,7 @@ private:
         return 0;
     }
 
-    /// The grid of a range image gives the column `approach`.
+    /// Reads the grid of a range image and adds the column `approach`.
     void read_grid(const PlyElement& element) {
         PlyTable table(element, header_.comments);
         decode(element, table.slots());

@@ -17,7 +17,7 @@ T load(const char* source, bool swapped) {
     return swapped ? byte_swapped(number) : number;
 }
 
-/// One property over many rows of fixed size: type and byte order are decided once, outside the loop.
+/// Copies one property of many rows of fixed size. Type and byte order are decided once, outside the loop.
 void copy_scalars(const char* source, std::size_t row_size, std::size_t rows, bool swapped, const PlySlot& slot,
                   std::size_t first_row) {
     visit_scalar(slot.property->type, [&](auto zero) {
@@ -56,7 +56,7 @@ std::size_t decode_fixed_rows(std::string_view body, const PlyElement& element, 
     return element.count * row_size;
 }
 
-/// The length of a list, of any integer type.
+/// The length of a list. The length may have any integer type.
 u64 list_length(const char* source, const PlyProperty& list, bool swapped, u64 row) {
     return visit_scalar(*list.count_type, [&](auto zero) -> u64 {
         const auto length = load<decltype(zero)>(source, swapped);
@@ -131,7 +131,8 @@ std::optional<std::size_t> packed_offset(const PlyElement& vertex, PlyEncoding e
     return offset;
 }
 
-/// `source` is the first row's x, rows are `stride` bytes apart. One pass: bounds and doubles together.
+/// Stores positions as doubles and computes their bounds, in one pass. `source` points to x of the first row; rows are
+/// `stride` bytes apart.
 template <class Scalar>
 FiniteBounds widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions) {
     FiniteBounds all;

@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    /// Finds world_. False when a coordinate is not finite.
+    /// Computes world_. Returns false if a coordinate is not finite.
     bool read_all(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {
             Array<Vec3> positions;
@@ -84,7 +84,8 @@ private:
         return *bounds;
     }
 
-    /// The bytes of these rows. Distant rows load as many pages as all rows: pages are released after each stretch.
+    /// The bytes of these rows. Rows that are far apart load as many pages as all rows, so pages are released after
+    /// each stretch.
     Array<char> picked_bytes(std::span<const u32> rows) const {
         constexpr std::size_t longest_stretch = std::size_t(1) << 20;
         Array<char> picked(rows.size() * row_size_);
@@ -128,8 +129,8 @@ private:
     std::string_view rows_;
 };
 
-/// Whether the file holds all its vertices and nothing else except line ends after them, so that reading it gives no
-/// warning about its content.
+/// Whether the file contains all its vertices, and after them only line ends. Reading such a file gives no warning
+/// about its content.
 bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
     if (header.encoding == PlyEncoding::ascii || header.elements.empty()) return false;
     const PlyElement& vertex = header.elements.front();

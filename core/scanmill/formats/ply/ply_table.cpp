@@ -16,7 +16,7 @@ std::vector<std::string> numbered(std::string_view name, u32 components) {
     return names;
 }
 
-/// Whether the element has all of these as scalars of the first one's type.
+/// Whether the element has all properties in `names`, as scalars of one type.
 bool has_all(const PlyElement& element, std::span<const std::string> names) {
     const PlyProperty* first = element.find(names.front());
     return std::ranges::all_of(names, [&](const std::string& name) {
@@ -41,7 +41,7 @@ struct Group {
     std::vector<std::string> properties;
 };
 
-/// The properties that become one column, with its name.
+/// The groups of properties that become one column each.
 std::vector<Group> groups_in(const PlyElement& element, const std::vector<std::string>& comments) {
     std::vector<Group> groups;
     const auto add = [&](std::string name, std::vector<std::string> properties) {
@@ -53,7 +53,8 @@ std::vector<Group> groups_in(const PlyElement& element, const std::vector<std::s
         add("colour", {"red", "green", "blue", "alpha"});
         if (groups.empty() || groups.back().name != "colour") add("colour", {"red", "green", "blue"});
     }
-    // A header may have millions of such comments: searching the properties of each would take hours.
+    // A header may have millions of such comments, so only the first ones count: searching the properties of each would
+    // take hours.
     std::size_t declarations = 0;
     for (const std::string& comment : comments) {
         const auto declared = declared_components(comment);
@@ -80,7 +81,7 @@ PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& co
                    std::span<const std::string_view> elsewhere)
     : exponents_(declared_exponents(comments)) {
     const std::vector<Group> groups = groups_in(element, comments);
-    // Slots point into pending_: it must not move.
+    // Slots point into pending_, so its elements must not move.
     pending_.reserve(element.properties.size());
     slots_.reserve(element.properties.size());
     for (const PlyProperty& property : element.properties) {

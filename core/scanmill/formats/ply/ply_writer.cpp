@@ -9,7 +9,7 @@ namespace scanmill {
 
 namespace {
 
-/// 64-bit integers as double, because PLY has none; other columns as they are.
+/// The column in a type that PLY has: 64-bit integers become double.
 Column carried(const Column& column, const WriteOptions& options) {
     if (column.type() != ScalarType::int64 && column.type() != ScalarType::uint64) return column;
     Array<double> wide;
@@ -49,7 +49,7 @@ public:
             while (std::ranges::any_of(ply_component_names(column.renamed(name)), is_taken)) name += "_";
             if (name != column.name())
                 warn(options.on_warning,
-                     "the column {} of the {} is written as '{}': PLY needs names without blanks, each only once",
+                     "the column {} of the {} is written as '{}': PLY needs distinct names without blanks",
                      quote(column.name()), element, name);
             const Column& added = columns_.emplace_back(carried(column, options).renamed(name));
             std::ranges::move(ply_component_names(added), std::back_inserter(taken));
@@ -60,8 +60,8 @@ public:
         }
     }
 
-    /// Declares an element with these lines before its properties. Comments declare which properties are one column,
-    /// and which are lengths.
+    /// Declares an element; `lines` come before its properties. Comments declare which properties form one column, and
+    /// which columns are lengths.
     void declare(std::string_view lines, Header& header) const {
         header.elements += lines;
         for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -102,7 +102,7 @@ public:
 
 private:
     std::vector<Column> columns_;
-    std::vector<bool> has_short_lists_;  // by column; true when all lengths fit into a byte
+    std::vector<bool> has_short_lists_;  // indexed by column; true if all lengths fit into a byte
 };
 
 void write_ply(const TriangleMesh& mesh, std::string_view vertices, bool has_faces, OutputBuffer& out,
@@ -119,7 +119,7 @@ void write_ply(const TriangleMesh& mesh, std::string_view vertices, bool has_fac
     of_vertices.declare(fmt::format("element vertex {1}\nproperty {0} x\nproperty {0} y\nproperty {0} z\n",
                                     as_float ? "float" : "double", mesh.positions.size()),
                         header);
-    // Most readers expect int here, not uint: it is used if the numbers fit.
+    // Most readers expect int here, not uint, so int is used if the numbers fit.
     const bool fits_int = mesh.positions.size() <= (std::size_t(1) << 31);
     if (has_faces)
         of_faces.declare(fmt::format("element face {}\nproperty list uchar {} vertex_indices\n", mesh.triangles.size(),

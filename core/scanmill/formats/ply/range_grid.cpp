@@ -10,7 +10,7 @@ namespace {
 
 constexpr u32 no_point = ~u32(0);
 
-/// Point of each cell; empty if a list is not as described.
+/// The point of each cell, or no_point. nullopt if a list has several numbers or its number is not a point.
 std::optional<std::vector<u32>> points_of(const Column& cells, std::size_t points) {
     std::vector<u32> rows(cells.rows(), no_point);
     bool is_valid = cells.type() < ScalarType::float32;
@@ -39,7 +39,7 @@ std::optional<Vec3> direction_to_scanner(const Column& cells, std::size_t column
         const u32 row = (*rows)[cell];
         return row != no_point && positions[row].allFinite() ? &positions[row] : nullptr;
     };
-    // The affine map by its normal equations, with positions relative to the first point.
+    // The affine map is computed from its normal equations, with positions relative to the first point.
     const Vec3* origin = nullptr;
     Vec3 facing = Vec3::Zero();
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), moments = Eigen::Matrix3d::Zero(), squares = moments;

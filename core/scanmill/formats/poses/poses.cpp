@@ -8,7 +8,7 @@ namespace scanmill {
 
 namespace {
 
-/// tx ty tz qx qy qz qw
+/// Reads the rest of a row: tx ty tz qx qy qz qw.
 std::array<double, 7> read_numbers(TextCursor& cursor, std::string_view scan) {
     if (const std::size_t found = cursor.count_tokens(); found != 7)
         throw Error("line {}: {} words follow {}; expected 7 numbers: tx ty tz qx qy qz qw", cursor.line(), found,
@@ -34,7 +34,7 @@ std::vector<ScanPose> parse_stanford_conf(std::string_view text, const OnPoseWar
         if (keyword != "mesh" && keyword != "bmesh")
             throw Error("line {}: {} does not begin a line of poses; expected one of {}{}", cursor.line(),
                         quote(keyword), enumerated(keywords), did_you_mean(keyword, keywords));
-        if (!cursor.more()) throw Error("line {}: '{}' without a file's name", cursor.line(), keyword);
+        if (!cursor.more()) throw Error("line {}: '{}' is not followed by a file's name", cursor.line(), keyword);
         ScanPose pose;
         pose.scan = cursor.token();
         const std::string line = fmt::format("line {}", cursor.line());

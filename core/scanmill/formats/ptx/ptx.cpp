@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    /// A row with `size` numbers of `what`. Pre: the cursor is in it.
+    /// Reads a row of `size` numbers. `what` names the row in messages. Pre: the cursor is in the row.
     template <int size>
     Eigen::RowVector<double, size> read_numbers(std::string_view what) {
         if (const std::size_t found = text_.count_tokens(); found != size)
@@ -126,7 +126,7 @@ private:
             for (std::size_t channel = 1; channel < 4; ++channel) values_[channel].push_back(number());
         if (text_.more()) throw_width();
         if (has_colours_.value_or(is_coloured) != is_coloured)
-            throw Error("line {}: a cell {} red, green and blue; those before in scan {} {}", text_.line(),
+            throw Error("line {}: a cell {} red, green and blue; the cells before it in scan {} {}", text_.line(),
                         is_coloured ? "has" : "lacks", scans_, is_coloured ? "have none" : "have them");
         has_colours_ = is_coloured;
         values_[0].push_back(intensity);
@@ -137,7 +137,7 @@ private:
             return (local.transpose() * matrix.topLeftCorner<3, 3>() + matrix.bottomLeftCorner<1, 3>()).transpose();
         };
         positions_.push_back(moves ? placed() : local);
-        // A huge or infinite coordinate has no direction: then it is 0.
+        // The direction of a point with a huge or infinite coordinate is not finite; it becomes 0.
         const Vec3 direction =
             (moves ? Vec3(matrix.topLeftCorner<3, 3>().transpose() * -local) : Vec3(-local)).stableNormalized();
         for (const double number : direction)
@@ -169,7 +169,7 @@ private:
     const ReadOptions& options_;
     std::size_t scans_ = 0;
     u64 empty_ = 0;
-    std::optional<bool> has_colours_;  // of this scan
+    std::optional<bool> has_colours_;  // of this scan; empty before its first point
     Array<Vec3> positions_;
     std::vector<Array<double>> values_{4};  // intensity, red, green, blue
     Array<float> approaches_;  // unit vectors to the scanner

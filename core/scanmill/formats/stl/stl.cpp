@@ -29,7 +29,8 @@ std::string header_of(const Frame& frame, const Vec3& shift) {
     return header;
 }
 
-/// "unit mm", "shift X Y Z" and "frame NAME" in a header of header_of(); of other headers the whole text.
+/// The comments "unit mm", "shift X Y Z" and "frame NAME" of a header from header_of(). For other headers, the whole
+/// text.
 std::vector<std::string> header_comments(std::string_view header) {
     header = trimmed(header.substr(0, header.find('\0')));
     if (header.empty()) return {};
@@ -51,7 +52,7 @@ bool same_word(std::string_view text, std::string_view lower) {
     return std::ranges::equal(text, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
 }
 
-/// Whether the text begins with the word "solid".
+/// Whether the file begins with the word "solid" and is text.
 bool is_ascii(std::string_view head) {
     TextCursor text(head);
     return text.next_row() && same_word(text.token(), "solid") && head.find('\0') == std::string_view::npos;
@@ -92,7 +93,8 @@ struct Soup {
     ColumnTable columns;
 
 private:
-    /// Throws Error for a file whose facets all have equal corners; `not_finite` of them also NaN or infinity.
+    /// Throws Error for a file whose facets all have equal corners. The coordinates of `finite` facets are finite,
+    /// those of `not_finite` facets are not.
     [[noreturn]] static void refuse(u64 finite, u64 not_finite) {
         const u64 facets = finite + not_finite;
         const std::string all = facets > 1 ? fmt::format("all {} facets", facets) : std::string("the only facet");
@@ -190,7 +192,7 @@ private:
         if (!name.empty()) comments_.push_back(std::move(name));
     }
 
-    /// Keywords may be on one line or on several.
+    /// The next word of the facet. Keywords may be on one line or on several lines.
     std::string_view next_word(std::string_view expected) {
         if (!text_.more() && !text_.next_row())
             throw Error("line {}: the text ends inside facet {}; expected '{}'", text_.line(), soup_.triangles.size(),
@@ -241,7 +243,7 @@ private:
 
 Recognition recognise(std::string_view head, u64 file_size) {
     if (has_binary_size(head, file_size)) return Recognition::certain;
-    // A zero byte is not text: the file may be a broken binary one, if its extension is .stl.
+    // A file with a zero byte is not text. It may be a broken binary file if its extension is .stl.
     return is_ascii(head) ? Recognition::certain : Recognition::no;
 }
 
@@ -254,7 +256,7 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
 /// The unit normal; zero for a triangle without area or with coordinates that are not finite.
 Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     Vec3 u = b - a, v = c - a;
-    // Scaled first: the cross product of tiny or huge edges would leave the range of double.
+    // The edges are scaled first, because the cross product of tiny or huge edges would leave the range of double.
     const double scale = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
     if (!(scale > 0) || !std::isfinite(scale)) return Vec3::Zero();
     u /= scale;

@@ -10,7 +10,7 @@ namespace scanmill {
 
 namespace {
 
-/// The fields of a touch in the order of the columns; others follow.
+/// The fields of a touch in the order of the columns. Fields that are not listed follow.
 constexpr std::array<std::string_view, 21> order{
     "touch",  "feature", "point",       "approach",      "order",         "reason",         "assumed",
     "phi",    "phi-min", "phi-max",     "phi-known-min", "phi-known-max", "interior-angle", "start",
@@ -22,7 +22,8 @@ struct Cells {
     std::vector<std::string> texts;
 };
 
-/// One column for a number; three for a vector, without the field's name for the point and the approach.
+/// The names of a field's columns: one for a number, three for a vector. The columns of point and approach do not have
+/// the field's name in them.
 template <class Field>
 Cells names_of_columns(const Field& field) {
     const std::string_view name = field.name;
@@ -61,7 +62,7 @@ Cells cells_of(const Frame& frame, const ProbeTouch& touch, const Field& field) 
     }
 }
 
-/// Writes a line of what `cells` gives for each field.
+/// Writes a line with the texts that cells(field) returns for each field.
 void write_line(OutputBuffer& out, auto&& cells) {
     std::vector<Cells> all;
     for_each_field<ProbeTouch>([&](const auto& field) { all.push_back(cells(field)); });
@@ -88,7 +89,7 @@ void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
 
 Format probes_csv_format() {
     const auto recognise = [](std::string_view, u64) { return Recognition::no; };
-    // Files with this extension are read by the format of points as CSV.
+    // The format of points reads files with this extension.
     const auto refuse = [](const FileBytes&, const ReadOptions&) -> LoadedFile {
         throw Error("probes are not read from CSV").hint("read them from JSON");
     };

@@ -28,7 +28,8 @@ bool has_tagged_points(std::string_view text) {
            is_row_of_numbers(cursor);
 }
 
-/// Throws Error with the line for a row that is not a single letter and numbers, or a point without three numbers.
+/// Reads the rows that begin with p as points. Throws Error with the line for a row that does not begin with a single
+/// letter, and for a point without three numbers.
 LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options) {
     TextCursor cursor(text, tagged_rules);
     Array<Vec3> positions;
@@ -56,7 +57,7 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
 
 class XyzReader {
 public:
-    /// `decimal_commas`: the row that showed that the text has them.
+    /// `decimal_commas` contains the row that shows that the text has decimal commas.
     XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options,
               std::optional<DecimalCommas> decimal_commas = {})
         : text_(text, decimal_commas ? decimal_comma_rules : text_rules),
@@ -82,7 +83,7 @@ public:
 
 private:
     void read_rows() {
-        // A row takes at least two bytes per number: the file's size bounds the reserved memory.
+        // A row takes at least two bytes per number, so the file's size bounds the reserved memory.
         constexpr std::size_t usual_number_text = 8;
         const std::size_t guess = size_ / (usual_number_text * layout_.width) + 1;
         positions_.reserve(guess);
@@ -119,7 +120,8 @@ private:
         has_commas_ = text_.has_commas();
     }
 
-    /// `rest`: the text from the row on.
+    /// Throws DecimalCommas if the current row shows that the text has decimal commas. `rest` is the text from the row
+    /// on.
     void refuse_decimal_commas(std::string_view rest) const {
         if (!decimal_commas_) require_no_decimal_commas(rest, text_.line());
     }
@@ -134,16 +136,17 @@ private:
         throw Error("line {}: {} is not a number", text_.line(), quote(token));
     }
 
-    /// "1,5,2,5,3,5" may be six numbers or three.
+    /// Warns if the commas may be decimal commas: "1,5,2,5,3,5" may be six numbers or three.
     void warn_of_commas() const {
         if (!has_commas_ || layout_.width <= 3 || !layout_.names.empty()) return;
         const auto is_whole = [](double number) { return number == std::trunc(number); };
         const auto all_whole = [&](const auto& numbers) { return std::ranges::all_of(numbers, is_whole); };
         if (!std::ranges::all_of(positions_, all_whole) || !std::ranges::all_of(further_, all_whole)) return;
-        warn(options_.on_warning,
-             "commas separate {} numbers in a row, and none of them has a decimal point: if they are decimal commas, "
-             "separate the numbers with semicolons; if not, name the columns in a first line, as x,y,z,intensity",
-             layout_.width);
+        warn(
+            options_.on_warning,
+            "commas separate {} numbers in a row, and no number has a decimal point; if the commas are decimal commas, "
+            "separate the numbers with semicolons, else name the columns in a first line, such as x,y,z,intensity",
+            layout_.width);
     }
 
     [[noreturn]] void throw_width(std::size_t found) const {
@@ -154,7 +157,7 @@ private:
         throw error;
     }
 
-    /// Checks the row as far as it was read.
+    /// Throws Error if the part of the row that was read has an empty field or different separators.
     void require_equal_separators(std::string_view rest) const {
         if (text_.has_empty_field() || text_.mixes_separators()) refuse_decimal_commas(rest);
         if (text_.has_empty_field())
@@ -197,7 +200,7 @@ private:
     TextLayout layout_;
     Array<double> row_;
     Array<Vec3> positions_;
-    std::vector<std::size_t> further_columns_;  // of a row: all except x, y and z
+    std::vector<std::size_t> further_columns_;  // the columns of a row except x, y and z
     std::vector<Array<double>> further_;
 };
 
@@ -218,7 +221,7 @@ Recognition recognise(std::string_view head, u64) {
 LoadedFile read(const FileBytes& file, const ReadOptions& options) {
     const std::string_view text = without_byte_order_mark(file.bytes);
     if (has_tagged_points(text)) return read_tagged_points(text, options);
-    std::vector<std::string> warnings;  // void if the text has decimal commas
+    std::vector<std::string> warnings;  // discarded if the text has decimal commas
     try {
         ReadOptions kept = options;
         kept.on_warning = [&](std::string sentence) { warnings.push_back(std::move(sentence)); };
@@ -233,7 +236,7 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
 /// No row is shorter than three digits with separators and a line end.
 constexpr std::size_t most_rows = std::size_t(1) << 16, shortest_row = std::string_view("1 2 3\n").size();
 constexpr std::size_t piece_size = std::size_t(1) << 18;
-/// A longer chunk contains no LF, so the text is not streamed.
+/// The largest size of a piece. A larger piece contains a line that is too long, so the text is not streamed.
 constexpr std::size_t longest_piece = most_rows * shortest_row;
 
 /// Thrown and caught in this file, for content that the reader of whole files refuses or warns about.
@@ -248,7 +251,7 @@ Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
     return {row[axes[0]], row[axes[1]], row[axes[2]]};
 }
 
-/// Whether the columns are x, y and z only, without a reason for a warning.
+/// Whether the columns are only x, y and z, without a reason for a warning.
 bool is_streamed(const TextLayout& layout) {
     return layout.width == 3 && !layout.declared_points && layout.ignored_names.empty();
 }
@@ -277,7 +280,7 @@ public:
     ColumnTable read_columns(std::size_t) const override { return {}; }
 
 private:
-    /// Divides the text into pieces. False when a line is too long.
+    /// Divides the text into pieces. Returns false if a line is too long.
     bool cut(std::string_view text) {
         while (!text.empty()) {
             const std::size_t line_end = text.size() > piece_size ? text.find('\n', piece_size) : text.npos;
@@ -290,7 +293,7 @@ private:
         return true;
     }
 
-    /// Finds pieces_ and world_. False when a coordinate is not finite, or there are too many rows.
+    /// Computes pieces_ and world_. Returns false if a coordinate is not finite, or if there are too many rows.
     bool read_all(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {
             Array<Vec3> positions;
@@ -315,7 +318,8 @@ private:
         return world_.finite && rows <= ~u32(0);
     }
 
-    /// Calls `read` on content that was streamable when the file was opened.
+    /// Calls `read` on content that was streamable when the file was opened. If it no longer is, throws the Error for a
+    /// file that has changed.
     template <class Read>
     static void reread(Read&& read) {
         try {
@@ -364,7 +368,7 @@ private:
 
     std::unique_ptr<MappedFile> file_;
     std::array<std::size_t, 3> axes_{0, 1, 2};
-    std::vector<std::string_view> texts_;  // of the pieces
+    std::vector<std::string_view> texts_;  // the text of every piece
     KeptComments comments_;
 };
 
@@ -409,7 +413,7 @@ std::vector<Format> text_formats() {
     xyz.memory_per_byte = 5;
     xyz.may_stream = may_stream;
     xyz.open_stream = open_stream;
-    // Points are not written: other programs expect commas, a count or normals in them.
+    // Files with these extensions are not written, because other programs expect commas, a count or normals in them.
     Format csv = xyz;
     csv.name = "CSV";
     csv.extensions = {"csv", "pts", "pwn", "asc"};

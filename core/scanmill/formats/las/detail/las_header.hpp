@@ -19,7 +19,7 @@ struct LasHeader {
     std::size_t point_size = 0;
     u64 points = 0;
     Vec3 scale, offset;
-    u32 extended_records = 0;  ///< after the points
+    u32 extended_records = 0;  ///< number of variable length records after the points
     std::string system, software;
 
     bool has_gps_time() const { return point_format >= 6 || (point_format & 1) != 0 || point_format == 4; }
@@ -28,11 +28,11 @@ struct LasHeader {
     bool has_wave_packets() const;
 };
 
-/// Throws Error when the file is shorter than its header, the version or the point format is unknown, or sizes, scale
-/// or offset are invalid. Does not check the points: see require_las_points().
+/// Throws Error if the file is shorter than its header, if the version or the point format is unknown, or if sizes,
+/// scale or offset are invalid. Does not check the points: see require_las_points().
 LasHeader read_las_header(std::string_view bytes);
 
-/// Throws Error unless there are points, and the file has room for all of them.
+/// Throws Error if the file has no points or is too short for all its points.
 void require_las_points(const LasHeader& header, std::string_view bytes);
 
 /// A variable length record: its owner, its number and its content.
@@ -42,14 +42,14 @@ struct LasRecord {
     std::string_view content;
 };
 
-/// The records between header and points. Warns of records that run into the points and leaves them out.
+/// The records between header and points. Leaves out records that overlap the points, with a warning.
 std::vector<LasRecord> read_las_records(const LasHeader& header, std::string_view bytes, const ReadOptions& options);
 
 /// Whether the record is the directory of GeoTIFF keys.
 bool holds_geo_keys(const LasRecord& record);
 
-/// The unit of x, y and z: the options' when known, else metre or foot by the GeoTIFF keys, else unknown. Warns of
-/// degrees, other units, and a different unit for heights.
+/// The unit of x, y and z: the unit in the options if known, else metre or foot if the GeoTIFF keys declare it, else
+/// unknown. Warns about degrees, other units, and a different unit for heights.
 LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& options);
 
 /// Extra bytes of a point, as the file describes them.
@@ -57,8 +57,8 @@ struct LasExtra {
     std::string name;
     ScalarType type = ScalarType::uint8;
     u32 components = 1;
-    std::size_t offset = 0;  ///< of the first component in a point
-    bool is_scaled = false;  ///< by the two below, one for each component
+    std::size_t offset = 0;  ///< bytes from a point's begin to the first component
+    bool is_scaled = false;  ///< whether `scale` and `shift`, one for each component, apply
     std::array<double, 3> scale{1, 1, 1};
     std::array<double, 3> shift{0, 0, 0};
 };
@@ -66,8 +66,8 @@ struct LasExtra {
 /// Whether the record is the description of extra bytes.
 bool describes_extra_bytes(const LasRecord& record);
 
-/// The described extra bytes, in order. Warns of extra bytes without a type, without a description or beyond the
-/// point's size, and leaves them out.
+/// The described extra bytes, in order. Leaves out extra bytes without a type, without a description or beyond the
+/// point's size, with a warning.
 std::vector<LasExtra> read_las_extra(const LasHeader& header, const std::vector<LasRecord>& records,
                                      const ReadOptions& options);
 

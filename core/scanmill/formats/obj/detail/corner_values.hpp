@@ -8,11 +8,14 @@
 
 namespace scanmill {
 
-/// A vertex gets the value of its corners if all corners that refer to one refer to equal values (values are compared,
-/// not their numbers). For other vertices: when values and vertices correspond one to one wherever a face refers to
-/// both, each gets the value of its own number, else zeros with a warning. When no face refers to any value, they
-/// belong to the vertices of equal number if there are as many, with a warning where faces exist. In all other cases
-/// no column is made, with a warning that has the reason and its numbers.
+/// The column has a value for every vertex:
+/// - If faces refer to values, a vertex gets the value of its corners. All its corners that refer to a value must refer
+///   to equal values; the values are compared, not their numbers.
+/// - A vertex whose corners refer to no value gets zeros, with a warning. It gets the value of its own number instead
+///   if there are as many values as vertices and every other vertex has the value of its own number, too.
+/// - If no face refers to a value and there are as many values as vertices, every vertex gets the value of its own
+///   number, with a warning if there are faces.
+/// In all other cases no column is added; a warning contains the reason with numbers.
 class CornerValues {
 public:
     /// `name` names the values in messages: "normals (vn)".
@@ -21,20 +24,22 @@ public:
           name_(name),
           components_(components) {}
 
-    /// The next number of the list; `components` of them make a value.
+    /// Adds the next number of the list of values; `components` numbers make a value.
     void add_number(double number) { numbers_.push_back(number); }
 
-    /// Corner `corner`, counted over all faces, refers to a value as the file spells it: from 1, or backwards from the
-    /// latest when negative. Pre: corners come in order.
+    /// Records that corner `corner`, counted over all faces, refers to a value. `spelled` is the number in the file: it
+    /// counts from 1, or backwards from the latest value if negative. Pre: corners come in order.
     void add_reference(std::size_t corner, std::int64_t spelled) {
-        // A value may follow the face that refers to it, so whether a positive one exists is checked at the end.
+        // A value may follow the face that refers to it. Whether a value with a positive number exists is therefore
+        // checked at the end.
         const auto latest = static_cast<std::int64_t>(count());
         const std::int64_t index = spelled > 0 ? spelled - 1 : latest + spelled;
         value_of_.resize(corner, none);
         value_of_.push_back(spelled == 0 || index < 0 || index >= several ? missing : static_cast<u32>(index));
     }
 
-    /// Adds the column for `vertices`. Pre: every element of `corners`, the vertex of each corner, is below `vertices`.
+    /// Adds a column with `vertices` rows. `corners` contains the vertex of each corner. Pre: every element of
+    /// `corners` is below `vertices`.
     void add_column(ColumnTable& columns, std::span<const u32> corners, std::size_t vertices,
                     const std::function<void(std::string)>& on_warning) {
         const auto add = [&](Array<double> numbers) {
@@ -94,7 +99,7 @@ private:
         return true;
     }
 
-    /// The value of every vertex: its number, `none` or `several`.
+    /// The value of every vertex: its index, `none` or `several`.
     Array<u32> values_of_vertices(std::span<const u32> corners, std::size_t vertices) const {
         Array<u32> values(vertices, none);
         for (std::size_t corner = 0; corner < value_of_.size(); ++corner) {
@@ -112,7 +117,7 @@ private:
     std::string_view name_;
     std::size_t components_;
     Array<double> numbers_;
-    Array<u32> value_of_;  // by corner; shorter when the last corners refer to none
+    Array<u32> value_of_;  // indexed by corner; shorter if the last corners refer to no value
 };
 
 }  // namespace scanmill

@@ -10,7 +10,7 @@
 
 namespace scanmill {
 
-/// The names that PLY has for the types, by ScalarType; name_of() gives the newer ones: int8 … float64.
+/// PLY's older names of the types, indexed by ScalarType. name_of() returns the newer names: int8 … float64.
 constexpr std::array<std::string_view, 10> ply_type_names{"char", "uchar", "short",  "ushort", "int",
                                                           "uint", "int64", "uint64", "float",  "double"};
 constexpr std::array<std::string_view, 3> ply_axes{"x", "y", "z"};
@@ -20,7 +20,7 @@ inline bool is_floating(ScalarType type) { return type >= ScalarType::float32; }
 struct PlyProperty {
     std::string name;
     ScalarType type;
-    /// Lists only: the type of the length, an integer.
+    /// The type of a list's length, an integer type; nullopt if the property is not a list.
     std::optional<ScalarType> count_type;
 
     bool is_list() const { return count_type.has_value(); }
@@ -31,10 +31,10 @@ struct PlyElement {
     u64 count = 0;
     std::vector<PlyProperty> properties;
 
-    /// nullptr when there is none.
+    /// The property of this name; nullptr if there is none.
     const PlyProperty* find(std::string_view property) const;
     bool has_lists() const;
-    /// Bytes of a binary row. Pre: no lists.
+    /// The size of a binary row in bytes. Pre: no property is a list.
     std::size_t row_size() const;
 };
 
@@ -46,15 +46,16 @@ struct PlyHeader {
     /// The text of comment and obj_info lines, in order.
     std::vector<std::string> comments;
     std::size_t size = 0;   ///< bytes before the body
-    std::size_t lines = 0;  ///< in the header
+    std::size_t lines = 0;  ///< number of lines of the header
 };
 
-/// Lines may end with LF, CRLF or CR, whichever ends the first. All names of the types are accepted, also of 64-bit
-/// integers. Declared counts are not checked: see require_room(). Throws Error with the line number.
+/// Parses the header. Lines may end with LF, CRLF or CR; the end of the first line decides. All names of the types are
+/// accepted, also those of 64-bit integers. Declared counts are not checked: see require_room(). Throws Error with the
+/// line number.
 PlyHeader parse_ply_header(std::string_view file);
 
-/// Throws Error when `left` bytes cannot hold the element's rows, each as short as possible. Call before any memory is
-/// taken for the element.
+/// Throws Error if `left` bytes cannot hold the element's rows, even if every row is as short as possible. Call it
+/// before allocating memory for the element.
 void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t left);
 
 /// One list per row: row r is values[offsets[r]] … values[offsets[r + 1] - 1].
@@ -63,24 +64,24 @@ struct PlyLists {
     Array<std::byte> values;
 };
 
-/// The destination of one property's numbers. Without a destination and lists they are skipped.
+/// The destination of one property's numbers. The numbers are skipped if `destination` and `lists` are nullptr.
 struct PlySlot {
     const PlyProperty* property = nullptr;
-    /// Scalars only: the number of row r is stored at destination + r × stride,
+    /// Scalars only: the number of row r is stored at destination + r × stride.
     std::byte* destination = nullptr;
     std::size_t stride = 0;
-    /// as a double instead of in its own type.
+    /// Scalars only: whether the numbers are stored as double instead of in their own type.
     bool widened = false;
-    /// Lists only.
+    /// Lists only: the destination of the lists.
     PlyLists* lists = nullptr;
 };
 
 /// Makes the slots of x, y and z store doubles from `positions` on.
 void place_axes(std::span<PlySlot> slots, Vec3* positions);
 
-/// Decodes `element.count` rows from the front of `body`; returns their size in bytes. Throws Error when the body is
-/// too short, with the row and byte (counted from `body_offset`) at which it ends.
-/// Pre: require_room() passed; slots in the order of the element's properties.
+/// Decodes `element.count` rows from the front of `body`; returns their size in bytes. Throws Error if the body is too
+/// short; the message contains the row and the byte (counted from `body_offset`) at which it ends.
+/// Pre: require_room() passed; `slots` are in the order of the element's properties.
 std::size_t decode_ply_binary(std::string_view body, std::size_t body_offset, const PlyElement& element,
                               bool big_endian, std::span<const PlySlot> slots);
 
@@ -90,14 +91,15 @@ struct OverlongRows {
     std::size_t first_line = 0;
 };
 
-/// The same for text, one row per line; the rest of overlong rows is skipped. Throws Error with the line number: too
-/// few values, a value that is not a number of the property's type, a list longer than its line.
+/// Decodes an element in text, one row per line, and skips the rest of overlong rows. Throws Error with the line number
+/// for too few values, a value that is not a number of the property's type, and a list longer than its line.
 OverlongRows decode_ply_ascii(TextCursor& text, const PlyElement& element, std::span<const PlySlot> slots);
 
-/// Decodes the positions of the most common binary files as fast as memory: rows of fixed size whose x, y and z are
-/// adjacent floats or doubles in the machine's byte order. Fills `positions`, one per row, from the rows at the front
-/// of `body`, and returns the bounds of the finite ones and whether all are; empty, without changes, for other
-/// elements. Pre: `body` has positions.size() rows; the element has scalars x, y and z.
+/// Decodes the positions of the most common binary files at the speed of memory. Such a file has rows of fixed size in
+/// which x, y and z are adjacent floats or doubles in the machine's byte order. Fills `positions`, one per row, from
+/// the rows at the front of `body`. Returns the bounds of the finite positions and whether all are finite. Returns
+/// nullopt, without changes, for other elements. Pre: `body` has positions.size() rows; the element has scalars x, y
+/// and z.
 std::optional<FiniteBounds> widen_packed_positions(std::string_view body, const PlyElement& vertex,
                                                    PlyEncoding encoding, Array<Vec3>& positions);
 
@@ -106,21 +108,22 @@ std::vector<std::string> ply_component_names(const Column& column);
 
 /// The columns of one PLY element, and their memory while its rows are decoded.
 ///
-/// nx, ny, nz of one floating-point type become `normal` (3); uchar red, green, blue and optionally alpha become
-/// `colour` (3 or 4); a header comment "components N NAME" gathers NAME_0 … NAME_N-1 of one type. Every other property
-/// becomes a column with its own name and type; lists become list columns. ply_component_names() is the inverse.
+/// nx, ny, nz of one floating-point type become `normal` (3). red, green, blue and optionally alpha of type uchar
+/// become `colour` (3 or 4). A header comment "components N NAME" unites NAME_0 … NAME_N-1 of one type. Every other
+/// property becomes a column with its own name and type; lists become list columns. ply_component_names() is the
+/// inverse.
 class PlyTable {
 public:
     /// Allocates memory for every property except those in `elsewhere`. Pre: require_room() passed; `element` outlives
-    /// this.
+    /// this object.
     PlyTable(const PlyElement& element, const std::vector<std::string>& comments,
              std::span<const std::string_view> elsewhere = {});
     PlyTable(const PlyTable&) = delete;
     PlyTable& operator=(const PlyTable&) = delete;
 
-    /// One for each property, in order; those of `elsewhere` have no destination yet.
+    /// One slot for each property, in order. The slots of the properties in `elsewhere` have no destination yet.
     std::span<PlySlot> slots() { return slots_; }
-    /// Removes the column of this name, if there is one. Call after decoding.
+    /// Removes and returns the column of this name, if there is one. Call after decoding.
     std::optional<Column> take(std::string_view name);
     /// The columns that were not taken.
     ColumnTable columns();

@@ -10,14 +10,16 @@
 
 namespace scanmill {
 
-/// The unit vector from the surface to a scanner whose rays are parallel. A range image has a point in each of its
-/// cells, or none, and the points' positions are affine in the cells' column and row, except along the rays. So the
-/// direction is that in which the positions differ most from the affine map that fits them best, or, where that is more
-/// than 60 degrees from the mean normal of the grid's triangles, this normal. Seen from the scanner, the next column is
-/// to the right and the next row is above, as in the files of the Stanford repository.
+/// The unit vector from the surface to a scanner whose rays are parallel. A cell of a range image has one point or
+/// none. Apart from their distance along the rays, the positions are an affine function of the cells' column and row.
+/// The direction to the scanner is therefore the direction in which the positions differ most from their best affine
+/// fit. If it is more than 60 degrees from the mean normal of the grid's triangles, this normal is returned instead.
+/// Seen from the scanner, the next column is to the right and the next row is above, as in the files of the Stanford
+/// repository.
 ///
-/// `cells`: per cell a list with the row of its point, or an empty one; row by row, `columns` in each. Empty if a list
-/// is longer or names no point, if the cells are not whole rows, or if no three neighbours have points.
+/// `cells` has a list for each cell: the row of the cell's point, or nothing. Cells are in row order, `columns` in each
+/// row. Returns nullopt if a list is longer or contains a number that is not a point, if the cells are not whole rows,
+/// or if no three neighbouring cells have points.
 std::optional<Vec3> direction_to_scanner(const Column& cells, std::size_t columns, std::span<const Vec3> positions);
 
 }  // namespace scanmill
