@@ -113,7 +113,7 @@ void AtomicFile::commit(Sync sync) {
         return;
     }
     if (sync == Sync::yes && ::fsync(descriptor_) != 0) throw_failed();
-    // linkat() replaces no file, rename() does: a file without a name gets a temporary one first.
+    // linkat() cannot replace a file, rename() can. A file without a name therefore gets a temporary name first.
     const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
     const fs::path folder = folder_of(target_);
     for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
@@ -137,7 +137,7 @@ void remove_abandoned_parts(const fs::path& folder) {
         if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
         const int process = std::atoi(name.c_str() + prefix.size());
         if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
-        // A process of another machine may be writing the file.
+        // A process on another machine may still be writing the file.
         constexpr std::chrono::minutes settled(1);
         std::error_code ignored;
         const auto written = fs::last_write_time(entry->path(), ignored);

@@ -14,13 +14,14 @@ namespace scanmill {
 
 class AtomicFile {
 public:
-    /// Throws Error: the folder is missing or not writable, the target exists and is not a regular file.
+    /// Throws Error if the folder is missing or not writable, or if the target exists and is neither a regular file nor
+    /// a symbolic link.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Appends; throws Error when the disk is full or fails.
+    /// Appends the bytes. Throws Error if the disk is full or fails.
     void write(std::string_view bytes);
     /// `no` skips fsync, for a file that can be made again at any time.
     enum class Sync { yes, no };

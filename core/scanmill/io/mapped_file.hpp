@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Reading files: the bytes of a regular file without a copy, and why a path is not a regular file.
+/// Reads files: the bytes of a regular file without a copy, and the reason why a path is not a regular file.
 
 #include <filesystem>
 #include <optional>
@@ -11,8 +11,8 @@
 namespace scanmill {
 
 /// Maps a regular, non-empty file for the object's life. Throws Error for a path that is missing, a folder, not a
-/// regular file, unreadable or empty. A process that shortens the file meanwhile kills the reader with SIGBUS: scans
-/// are written once and read afterwards.
+/// regular file, unreadable or empty. If a process shortens the file meanwhile, the reader is killed with SIGBUS. This
+/// is accepted because scans are written once and read afterwards.
 class MappedFile {
 public:
     /// `whole` loads all pages at once, for a file that is read completely. Otherwise only the pages that are read take
@@ -26,8 +26,8 @@ public:
 
     /// Loads the pages of `part`, a part of bytes(), in one call. Use it right before reading them.
     void fetch(std::string_view part) const noexcept;
-    /// Frees the pages of `part` and those that were mapped around it. Reading them again loads them again; other
-    /// threads may read them meanwhile.
+    /// Frees the pages of `part` and the pages that were mapped around it. Reading these pages again loads them again.
+    /// Other threads may read them meanwhile.
     void release(std::string_view part) const noexcept;
 
 private:
@@ -35,8 +35,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Empty for a regular file, else an Error that names what the path leads to and what to do. Opens nothing: opening a
-/// pipe would wait for its writer. Does not check read permission.
+/// nullopt for a regular file, else an Error that states what the path leads to and what to do. Does not open the file,
+/// because opening a pipe would wait for its writer. Does not check read permission.
 std::optional<Error> why_no_file(const std::filesystem::path& path);
 
 }  // namespace scanmill

@@ -24,7 +24,7 @@ std::uint64_t machine_memory() {
     return unlimited;
 }
 
-/// nullopt for "max" or a missing file.
+/// The number in a file; nullopt for "max" or a missing file.
 std::optional<std::uint64_t> number_in(const std::string& file) {
     std::ifstream stream(file);
     std::uint64_t number = 0;

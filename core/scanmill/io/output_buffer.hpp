@@ -2,7 +2,7 @@
 #pragma once
 /// Gathers small pieces of output, binary or text, into large ones for a file or memory.
 ///
-/// Binary numbers are little-endian on every machine; text numbers are the shortest that read back equal, in any
+/// Binary numbers are little-endian on every machine. Numbers in text are the shortest that read back equal, in any
 /// locale.
 
 #include <array>
