@@ -15,7 +15,8 @@
 
 namespace scanmill {
 
-/// Weights c_ijkl of one tetrahedron; (i, j, k, l) falls lexicographically: 3000, 2100, 2010, 2001, 1200, …, 0003.
+/// Weights c_ijkl of one tetrahedron, with (i, j, k, l) in descending lexicographic order: 3000, 2100, 2010, 2001,
+/// 1200, …, 0003.
 using PatchWeights = std::array<double, 20>;
 
 enum class PatchKind : u8 {

@@ -13,7 +13,8 @@ namespace scanmill {
 
 namespace {
 
-/// Refuses repeated keys, of which nlohmann's parser would keep one, and nesting too deep for recursive readers.
+/// Refuses repeated keys, because nlohmann's parser would keep only one of them. Refuses nesting that is too deep for
+/// recursive readers.
 class StrictStructure {
 public:
     bool operator()(int depth, Json::parse_event_t event, Json& value) {
@@ -53,7 +54,7 @@ void JsonForm<LengthUnit>::read(const Json& json, LengthUnit& unit) {
 }
 
 Json JsonForm<LengthUnit>::schema() {
-    return schema::described("The unit of lengths; null: not declared.", "",
+    return schema::described("The unit of lengths; null if not declared.", "",
                              {{"enum", {"um", "mm", "cm", "m", "in", "ft", nullptr}}});
 }
 
@@ -87,7 +88,7 @@ void JsonByName<Metrics>::read(const Json& json, Metrics& metrics) {
 }
 
 Json JsonByName<Metrics>::schema() {
-    return schema::described("Numbers by name; null: not finite.", "",
+    return schema::described("Numbers by name; null for a number that is not finite.", "",
                              schema::map_of({{"type", {"number", "boolean", "null"}}}));
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 /// The common parts of the JSON forms of all kinds.
 ///
-/// A document is an object with `"scanmill": 1`, a `unit` and the member that identifies its kind. Errors use our
-/// words, not those of the JSON library.
+/// A document is an object with `"scanmill": 1`, a `unit` and the member that identifies its kind. Errors do not
+/// contain messages of the JSON library.
 
 #include <string>
 #include <string_view>
@@ -16,9 +16,9 @@
 
 namespace scanmill {
 
-// Forms of small types.
+// JSON forms of small types.
 
-/// Its name.
+/// A kind's name.
 template <>
 struct JsonForm<Kind> {
     static Json write(Kind kind) { return kind.name(); }
@@ -26,7 +26,7 @@ struct JsonForm<Kind> {
     static Json schema() { return schema::type("string"); }
 };
 
-/// Its symbol; null: unknown.
+/// A unit's symbol; null if unknown.
 template <>
 struct JsonForm<LengthUnit> {
     static Json write(LengthUnit unit) { return unit == LengthUnit::unknown ? Json() : Json(symbol(unit)); }
@@ -34,7 +34,7 @@ struct JsonForm<LengthUnit> {
     static Json schema();
 };
 
-/// As people write it.
+/// A quantity as people write it.
 template <class Quantity>
 struct QuantityForm {
     static Json write(const Quantity& quantity) { return quantity.text(); }
@@ -52,19 +52,19 @@ struct JsonForm<Angle> : QuantityForm<Angle> {};
 template <>
 struct JsonForm<Ratio> : QuantityForm<Ratio> {};
 
-/// Numbers, true and false; counts are integers, and a number that is not finite is null.
+/// An object with a number, true or false for each metric. Counts are integers. A number that is not finite is null.
 template <>
 struct JsonByName<Metrics> {
     static Json write(const Metrics& metrics);
-    /// The unit of all is number.
+    /// All metrics get the unit `number`.
     static void read(const Json& json, Metrics& metrics);
     static Json schema();
 };
-/// Names and values.
+/// The names and values of metrics, without units.
 inline Json metrics_json(const Metrics& metrics) { return JsonByName<Metrics>::write(metrics); }
 
-/// Throws Error for text that is not JSON (with the line), a key that is twice in one object, and nesting deeper than
-/// 16 levels.
+/// Parses JSON. Throws Error for text that is not JSON (with the line), a number that is too large, a key that occurs
+/// twice in one object, and nesting deeper than 16 levels.
 Json parse_document(std::string_view text);
 
 /// A whole document: "scanmill": 1 and the members of a described struct.
@@ -78,7 +78,7 @@ Json document_of(const Document& content) {
 /// Throws Error unless the document is an object with "scanmill": 1.
 void require_document(const Json& document);
 
-/// Throws Error as require_document() and read_json().
+/// Reads a whole document. Throws Error under the conditions of require_document() and read_json().
 template <Described Document>
 Document from_document(const Json& json) {
     require_document(json);
@@ -92,13 +92,13 @@ Document from_document(const Json& json) {
     return content;
 }
 
-/// Moves the frame's origin of an object to 0, and to a point from which all positions are exact. The positions keep
-/// their world coordinates.
+/// Move the frame's origin of an object: use_world_origin() to 0, use_near_origin() to a point relative to which all
+/// positions are exact. World coordinates do not change.
 void use_world_origin(Kind kind, void* object);
 void use_near_origin(Kind kind, void* object);
 
 /// Members of the traits of types with a JSON form. `Document` is a described struct; KindTraits<T>::document() makes
-/// it from an object in world coordinates, and KindTraits<T>::object() the object from it.
+/// it from an object in world coordinates. KindTraits<T>::object() makes the object from it.
 template <class T, Described Document>
 struct HasDocument {
     static void to_json(const T& object, Json& json) {

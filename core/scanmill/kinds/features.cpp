@@ -7,9 +7,9 @@
 ///      "corners": [[0, 0, 0], [0, 1, 0]]}
 ///
 /// `type` is outer boundary, hole or crease, as in VTP. Points are world coordinates; a closed polyline does not repeat
-/// its first point. Normals belong to segments, one each, in order; the last segment of a closed polyline returns to
-/// its first point. A normal is null where there is no surface. `unit` and `frame` are null if unknown. Vertices that
-/// are in no polyline and not a corner are not written.
+/// its first point. Every segment has one normal on each side, in order; the last segment of a closed polyline returns
+/// to its first point. A normal is null where there is no surface. `unit` and `frame` are null if unknown. Vertices
+/// that are in no polyline and not a corner are not written.
 #include "scanmill/data/features.hpp"
 
 #include <algorithm>
@@ -33,11 +33,11 @@ struct PolylineDocument {
 };
 constexpr auto fields(const PolylineDocument*) {
     using T = PolylineDocument;
-    return std::tuple{field("type", &T::type),
-                      field("closed", &T::closed, "Its last segment returns to its first point."),
-                      field("points", &T::points, "World coordinates."),
-                      field("left-normals", &T::left_normals, "Normal left of each segment; null: no surface."),
-                      field("right-normals", &T::right_normals, "Normal right of each segment; null: no surface.")};
+    return std::tuple{
+        field("type", &T::type), field("closed", &T::closed, "The last segment returns to the first point."),
+        field("points", &T::points, "World coordinates."),
+        field("left-normals", &T::left_normals, "The normal left of each segment; null if there is no surface."),
+        field("right-normals", &T::right_normals, "The normal right of each segment; null if there is no surface.")};
 }
 
 struct FeaturesDocument {
@@ -63,7 +63,7 @@ PolylineDocument document_of(const FeatureGraph& graph, const FeaturePolyline& l
     return document;
 }
 
-/// Makes a graph of a document. Equal points become one vertex; vertices are numbered in order of their first use.
+/// Makes a graph from a document. Equal points become one vertex; vertices are numbered in order of their first use.
 class GraphMaker {
 public:
     FeatureGraph graph_of(const FeaturesDocument& document) {

@@ -35,7 +35,7 @@ struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMe
         return {{"closed", Unit::boolean, "A closed, oriented manifold: no boundary, one fan at every vertex.",
                  Better::larger},
                 {"components", Unit::count, "Edge-connected components."},
-                {"genus", Unit::count, "Handles, summed over the components, holes counted as filled."},
+                {"genus", Unit::count, "Handles, summed over the components; holes count as filled."},
                 {"boundary-loops", Unit::count, "Boundary loops."},
                 {"triangles", Unit::count, "Triangles."},
                 {"points", Unit::count, "Vertices."}};

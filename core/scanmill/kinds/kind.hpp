@@ -49,7 +49,7 @@ struct KindInfo {
     std::string_view name;
     bool is_geometric;
     std::shared_ptr<void> (*make)();
-    std::shared_ptr<void> (*copy)(const void* object);  ///< shares its arrays
+    std::shared_ptr<void> (*copy)(const void* object);  ///< the copy shares the object's arrays
     void (*visit)(FieldVisitor& visitor, void* object);
     RobustBox (*box)(const void* object);
     double (*spacing)(const void* object);
@@ -59,10 +59,10 @@ struct KindInfo {
     std::string_view json_member;
     void (*to_json)(const void* object, nlohmann::ordered_json& document);
     std::shared_ptr<void> (*from_json)(const nlohmann::ordered_json& document, const OnWarning& warn);
-    nlohmann::ordered_json (*schema)();  ///< schema of its documents; null without a JSON form
+    nlohmann::ordered_json (*schema)();  ///< schema of the kind's documents; null without a JSON form
 };
 
-/// Identifies one kind. Kinds are equal if their names are.
+/// Identifies one kind. Two kinds are equal if their names are equal.
 class Kind {
 public:
     /// The kind `points`.
@@ -89,7 +89,7 @@ std::optional<Kind> kind_named(std::string_view name);
 /// "points, mesh, tets, features, patches, probes, transform, metrics", for messages.
 std::string kind_names();
 
-/// Adds a kind to all_kinds(), for a module with its own kind; a second one of the same name is ignored.
+/// Adds a kind to all_kinds(), for a module with its own kind. A second kind of the same name is ignored.
 void register_kind(Kind kind);
 
 }  // namespace scanmill

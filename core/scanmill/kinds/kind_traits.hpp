@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Everything the framework needs of a kind, in one class; and the visitor of an object's fields.
+/// The traits of a kind, which contain everything that the framework needs, and the visitor of an object's fields.
 
 #include <concepts>
 #include <nlohmann/json_fwd.hpp>
@@ -13,17 +13,18 @@ namespace scanmill {
 template <class T>
 struct JsonForm;
 
-/// Visits every field of an object of any kind, to read or to change it. One function is called per field, as its
-/// description states what it means: a visitor that moves an object changes positions and directions, one that converts
-/// units changes lengths, one that stores the object takes everything. By default nothing changes.
+/// Visits every field of an object of any kind, to read or to change it. The meaning in a field's description decides
+/// which function is called for the field. A visitor that moves an object changes positions and directions, a visitor
+/// that converts units changes lengths, a visitor that stores the object takes all fields. The functions of this class
+/// change nothing.
 class FieldVisitor {
 public:
     virtual ~FieldVisitor() = default;
 
     virtual void frame(const char* /*name*/, Frame&) {}
-    /// Relative to the frame's origin.
+    /// Positions relative to the frame's origin.
     virtual void positions(const char* /*name*/, Buffer<Vec3>&) {}
-    /// Unit vectors, or zero.
+    /// Unit vectors; zero if there is no direction.
     virtual void directions(const char* /*name*/, Buffer<Vec3>&) {}
     /// Lengths raised to `exponent`.
     virtual void lengths(const char* /*name*/, Buffer<double>&, int /*exponent*/) {}
@@ -45,7 +46,7 @@ public:
 
 private:
     virtual void bytes_of(const char* /*name*/, Buffer<std::byte>&, std::size_t /*element*/) {}
-    /// True if it replaced the JSON.
+    /// Returns true if it replaced the JSON.
     virtual bool json_of(const char* /*name*/, nlohmann::ordered_json&) { return false; }
 };
 
@@ -68,8 +69,8 @@ void visit_array(FieldVisitor& visitor, const char* name, const auto& field, Buf
     visitor.plain(name, elements);
 }
 
-/// Visits a list of structs field by field: the members of all rows are one array, lists of positions one after the
-/// other.
+/// Visits a list of structs field by field. The members of all rows form one array; lists of positions are
+/// concatenated.
 template <Described Row>
 void visit_rows(FieldVisitor& visitor, const std::string& prefix, std::vector<Row>& rows) {
     for_each_field<Row>([&](const auto& field) {
@@ -132,15 +133,15 @@ void visit_fields(FieldVisitor& visitor, T& object) {
     });
 }
 
-/// Specialised for every kind, whose type has fields() that state what they mean. A missing member does not compile;
-/// the bases below, and HasDocument (document.hpp), provide members for common cases.
+/// Specialised for every kind. The kind's type has fields() with their meanings. A specialisation that lacks a member
+/// does not compile. The bases below, and HasDocument (document.hpp), provide members for common cases.
 ///
 ///     template <>
 ///     struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
 ///         static constexpr std::string_view name = "points";
 ///         /// Counts and topology that `expect` may test and summaries show.
 ///         static std::vector<PropertySpec> property_specs();
-///         /// In the order of property_specs(); empty where a property is not defined.
+///         /// In the order of property_specs(); nullopt for a property that is not defined.
 ///         static std::vector<std::optional<double>> property_values(const PointCloud& cloud);
 ///         /// Throws Error if a filter's result of this kind is empty or inconsistent.
 ///         static void require_usable(const PointCloud& cloud);
@@ -163,14 +164,15 @@ struct NotGeometric {
     static RobustBox box(const T&) { return {}; }
     static double spacing(const T&) { return 0; }
 };
-/// Members of the traits of types without properties, of which every object is usable.
+/// Members of the traits of types without properties. Every object of such a type is usable.
 template <class T>
 struct NoProperties {
     static std::vector<PropertySpec> property_specs() { return {}; }
     static std::vector<std::optional<double>> property_values(const T&) { return {}; }
     static void require_usable(const T&) {}
 };
-/// Members of the traits of types without a JSON form. `json_member` is a member that only documents of a kind have.
+/// Members of the traits of types without a JSON form. In other traits, `json_member` is the name of a member that only
+/// documents of this kind have.
 template <class T>
 struct NoJson {
     static constexpr std::string_view json_member = "";

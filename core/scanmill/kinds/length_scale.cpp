@@ -22,7 +22,7 @@ double usable_diagonal(const RobustBox& box, std::size_t points, const Frame& fr
                     points == 1         ? "the only point is"
                     : box.stray.empty() ? fmt::format("all {} points are", points)
                                         : fmt::format("{} of {} points are", points - box.stray.size(), points))
-            .hint("give a length instead, as 0.5 u");
+            .hint("give a length instead, for example 0.5 u");
     if (!box.stray.empty() && on_stray) on_stray(stray_warning(box, frame));
     return diagonal;
 }
@@ -41,7 +41,7 @@ double spacing_of(const Value& value) {
     return spacing;
 }
 
-/// Computes at most once, also if it is copied.
+/// Returns a function that calls `compute` at most once. Copies of the function share the result.
 std::function<double()> memoised(std::function<double()> compute) {
     return [memo = std::make_shared<std::optional<double>>(), compute = std::move(compute)] {
         if (!*memo) *memo = compute();
@@ -91,10 +91,10 @@ std::string stray_warning(const RobustBox& box, const Frame& frame) {
     }
     if (count > shown) points += fmt::format(" and {} more", count - shown);
     return fmt::format(
-        "%diag is {:.6g} u, the diagonal of the box without {}, not {:.6g} u, that of all points: {}; remove {} if {} "
-        "not part of the object",
-        box.robust.diagonal(), count_text(count, "stray point", "stray points"), box.all.diagonal(), points,
-        by_count(count, "it", "them"), by_count(count, "it is", "they are"));
+        "%diag is {:.6g} u, the diagonal of the box without {}, instead of {:.6g} u with {} ({}); remove {} if {} not "
+        "part of the object",
+        box.robust.diagonal(), count_text(count, "stray point", "stray points"), box.all.diagonal(),
+        by_count(count, "it", "them"), points, by_count(count, "it", "them"), by_count(count, "it is", "they are"));
 }
 
 }  // namespace scanmill

@@ -12,7 +12,7 @@ namespace scanmill {
 /// The lengths that `%diag` and `spacing` refer to for this value: the diagonal of KindTraits::box() and
 /// KindTraits::spacing(), each computed at most once, on demand. `%diag` throws Error if all positions are equal. For
 /// metrics, `%diag` is their metric `diagonal`, and `spacing` throws Error. `on_stray`, unless empty, gets the sentence
-/// of stray_warning() when `%diag` is computed for points of which some are stray.
+/// of stray_warning() if `%diag` is computed and there are stray points.
 LengthScale length_scale(const Value& value, const OnWarning& on_stray = {});
 
 class PointStream;

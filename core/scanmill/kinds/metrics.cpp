@@ -4,8 +4,8 @@
 ///     {"scanmill": 1, "unit": "mm", "metrics": {"hausdorff": 0.12, "closed": true, …},
 ///      "units": {"hausdorff": "length", …}}
 ///
-/// `unit` is the unit of lengths; areas and volumes are in its powers; null if unknown. Angles are in radians, ratios
-/// plain fractions; booleans are true and false; a value that is not finite is null and is read as NaN.
+/// `unit` is the unit of lengths, or null if unknown; areas and volumes are in its powers. Angles are in radians.
+/// Ratios are plain fractions. Booleans are true or false. A value that is not finite is null and is read as NaN.
 #include "scanmill/data/metrics.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct MetricsDocument {
 constexpr auto fields(const MetricsDocument*) {
     using T = MetricsDocument;
     return std::tuple{field("unit", &T::unit).nullable(), field("metrics", &T::metrics).by_name(),
-                      field("units", &T::units, "By metric.")};
+                      field("units", &T::units, "The unit of each metric.")};
 }
 
 }  // namespace

@@ -6,11 +6,12 @@
 ///      "tets": [{"vertices": [12, 0, 1, 30], "weights": [-0.02, …], "kind": "face", "side": 1, "patch": 0,
 ///                "edge": null, "combine": "none", "partner": null}, …]}
 ///
-/// Points are world coordinates. The 20 weights c_ijkl are ordered by (i, j, k, l) falling lexicographically: 3000,
-/// 2100, …, 0003. `kind` is face, edge, sharp or continuation; `side` is 1 outside the mesh and 0 inside; `patch` is
-/// the row of the mesh's triangle, and `edge` the number of its edge, or null. `combine` is none where the tetrahedron
-/// has one polynomial; where it has two, it is max or min, and `partner` is the row of `tets` with the same points and
-/// the other polynomial, else null. `unit` and `frame` are null if unknown. Numbers are read back bit for bit.
+/// Points are world coordinates. The 20 weights c_ijkl are in descending lexicographic order of (i, j, k, l): 3000,
+/// 2100, …, 0003. `kind` is face, edge, sharp or continuation. `side` is 1 outside the mesh and 0 inside. `patch` is
+/// the row of the mesh's triangle; `edge` is the number of the mesh's edge, or null. For a tetrahedron with one
+/// polynomial, `combine` is none and `partner` is null. For a tetrahedron with two, `combine` is max or min, and
+/// `partner` is the row of `tets` with the same points and the other polynomial. `unit` and `frame` are null if
+/// unknown. Numbers are read back bit for bit.
 #include "scanmill/data/patches.hpp"
 
 #include <algorithm>
@@ -28,8 +29,8 @@ std::size_t number_of_patches(const PatchComplex& patches) {
     return most;
 }
 
-/// Throws Error unless the partner of `row` has the same points and the same rule, and is another row whose partner is
-/// `row`; and unless there is one exactly where functions are combined.
+/// Throws Error unless `row` has a partner exactly if its function is combined with another one. The partner must be
+/// another row with the same points, the same side and the same rule; its partner must be `row`.
 void require_partner(const PatchComplex& patches, std::size_t row) {
     const u32 partner = patches.partners[row];
     if ((partner == PatchComplex::no_partner) != (patches.combine[row] == Combine::none))
@@ -39,7 +40,7 @@ void require_partner(const PatchComplex& patches, std::size_t row) {
     if (partner >= patches.tets.size())
         throw Error("tetrahedron {} has partner {}; there are {} tetrahedra", row, partner, patches.tets.size());
     if (partner == row || patches.partners[partner] != row)
-        throw Error("tetrahedron {} has partner {}, which has another one", row, partner);
+        throw Error("tetrahedron {} has partner {}, which has another partner", row, partner);
     auto one = patches.tets[row], other = patches.tets[partner];
     std::ranges::sort(one);
     std::ranges::sort(other);
@@ -86,13 +87,16 @@ constexpr auto fields(const TetDocument*) {
     using T = TetDocument;
     return std::tuple{
         field("vertices", &T::vertices, "Rows of the points."),
-        field("weights", &T::weights, "c_ijkl, (i, j, k, l) falling lexicographically: 3000, 2100, …, 0003."),
+        field("weights", &T::weights,
+              "c_ijkl, with (i, j, k, l) in descending lexicographic order: 3000, 2100, …, 0003."),
         field("kind", &T::kind),
         field("side", &T::side, "1 outside the mesh, 0 inside."),
         field("patch", &T::patch, "The row of the mesh's triangle."),
-        field("edge", &T::edge, "The number of the mesh's edge; null: it is over a triangle.").nullable(),
+        field("edge", &T::edge, "The number of the mesh's edge; null if the tetrahedron is over a triangle.")
+            .nullable(),
         field("combine", &T::combine, "How the function is combined with the partner's."),
-        field("partner", &T::partner, "The row of the other tetrahedron with the same points; null: none.").nullable()};
+        field("partner", &T::partner, "The row of the other tetrahedron with the same points; null if there is none.")
+            .nullable()};
 }
 
 struct PatchesDocument {

@@ -13,8 +13,8 @@
 ///
 /// Points are world coordinates, angles radians. `reason` is none, concave, too-narrow, too-tilted or obstructed;
 /// `contact` is none, edge, elsewhere or missed; `type` is clearance, approach or retract; `touch` of a move is a row
-/// of `touches`. What is not defined is null: a range without directions, the direction of a touch that is not made,
-/// the order of one; also `unit` and `frame` if unknown. Numbers are read back bit for bit.
+/// of `touches`. Undefined values are null: a range without directions, and the direction and the order of a touch that
+/// is not made. `unit` and `frame` are null if unknown. Numbers are read back bit for bit.
 #include "scanmill/data/probes.hpp"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct KindTraits<ProbePlan> : HasDocument<ProbePlan, ProbePlan> {
     static double spacing(const ProbePlan& plan) { return point_spacing(touch_points(plan)); }
 
     static std::vector<PropertySpec> property_specs() {
-        return {{"touches", Unit::count, "Touches, with those that are not made."},
+        return {{"touches", Unit::count, "Touches, including those that are not made."},
                 {"unreachable", Unit::count, "Touches that are not made.", Better::smaller}};
     }
     static std::vector<std::optional<double>> property_values(const ProbePlan& plan) {

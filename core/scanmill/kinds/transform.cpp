@@ -16,8 +16,8 @@ namespace scanmill {
 namespace {
 
 void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
-    constexpr double most =
-        1e-6;  // largest entry of R Rᵀ − I that counts as rounding; this covers numbers with truncated digits
+    // The largest entry of R Rᵀ − I that counts as rounding. It covers numbers with truncated digits.
+    constexpr double most = 1e-6;
     const double off = (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (const double determinant = matrix.determinant(); off <= most && determinant < 0)
         throw Error("{}: the matrix is a reflection: its determinant is {:.6g}; a rotation's is 1", place, determinant)
@@ -33,7 +33,7 @@ void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
         .hint("write it with seven digits or more");
 }
 
-/// The rotation nearest to a matrix that is almost one: Björck and Bowie 1971; every step squares the error.
+/// The rotation nearest to a matrix that is almost a rotation (Björck and Bowie 1971). Every step squares the error.
 Eigen::Matrix3d orthonormal(Eigen::Matrix3d matrix) {
     for (int step = 0; step < 2; ++step)
         matrix = 0.5 * (matrix * (3 * Eigen::Matrix3d::Identity() - matrix.transpose() * matrix)).eval();
@@ -82,12 +82,13 @@ struct PoseDocument {
 };
 constexpr auto fields(const PoseDocument*) {
     using T = PoseDocument;
-    return std::tuple{field("scan", &T::scan, "The name of the coordinate system, or of the scan, that it starts from.")
-                          .nullable()
-                          .optional(),
-                      field("rotation", &T::rotation, "A quaternion x, y, z, w.").optional(),
-                      field("translation", &T::translation).optional(),
-                      field("matrix", &T::matrix, "Instead of both: four rows.").optional()};
+    return std::tuple{
+        field("scan", &T::scan, "The name of the coordinate system, or of the scan, that the pose starts from.")
+            .nullable()
+            .optional(),
+        field("rotation", &T::rotation, "A quaternion x, y, z, w.").optional(),
+        field("translation", &T::translation).optional(),
+        field("matrix", &T::matrix, "Four rows, instead of rotation and translation.").optional()};
 }
 
 struct PosesDocument {
@@ -98,7 +99,7 @@ struct PosesDocument {
 constexpr auto fields(const PosesDocument*) {
     using T = PosesDocument;
     return std::tuple{field("unit", &T::unit).nullable().optional(),
-                      field("frame", &T::frame, "The coordinate system that it leads to.").nullable().optional(),
+                      field("frame", &T::frame, "The coordinate system that all poses lead to.").nullable().optional(),
                       field("poses", &T::poses)};
 }
 
@@ -106,7 +107,8 @@ RigidTransform motion_at(const PoseDocument& pose, const std::string& place, con
     if (pose.matrix) {
         for (const auto& [name, is_given] :
              {std::pair("rotation", pose.rotation.has_value()), std::pair("translation", pose.translation.has_value())})
-            if (is_given) throw Error("{}: has a matrix and '{}'; expected one of the two ways", place, name);
+            if (is_given)
+                throw Error("{}: has a matrix and '{}'; expected a matrix, or rotation and translation", place, name);
         return motion_of(std::span<const double, 16>(pose.matrix->front().data(), 16), place);
     }
     if (!pose.rotation) throw Error("{}: 'rotation' is missing", place);

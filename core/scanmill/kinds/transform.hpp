@@ -5,9 +5,10 @@
 ///     {"scanmill": 1, "unit": "m", "frame": "bunny",
 ///      "poses": [{"scan": "bun000.ply", "rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]}
 ///
-/// with rotation = [qx, qy, qz, qw], a point p goes to R(q) p + t; `unit`, `frame` (the name of the frame that all
-/// poses lead to) and `scan` (the frame that the pose starts from) are optional. Instead of rotation and translation a
-/// pose may have `"matrix"`, four rows of four numbers, which maps (p, 1). Coordinates are world coordinates.
+/// A pose with rotation q = [qx, qy, qz, qw] and translation t maps a point p to R(q) p + t. `unit`, `frame` (the name
+/// of the frame that all poses lead to) and `scan` (the frame that the pose starts from) are optional. Instead of
+/// rotation and translation, a pose may have `"matrix"`: four rows of four numbers that map (p, 1). Coordinates are
+/// world coordinates.
 ///
 /// The JSON form of a transform is such a document with one pose, written as a matrix, which keeps every bit.
 
@@ -20,23 +21,24 @@
 namespace scanmill {
 
 struct ScanPose {
-    std::string scan;  ///< as the file has it: a file's name or stem; may be empty in JSON
+    std::string scan;  ///< the name or stem of the scan's file, as written; may be empty in JSON
     RigidTransform transform;
 };
 
-/// In the document's order, at least one. Throws Error with the number of the pose (from 1) for unknown keys, missing,
-/// superfluous or infinite numbers, a quaternion whose length is more than 0.1 % off 1, and a matrix that is not a
-/// rigid motion. Quaternions are scaled to length 1, with a warning if rounding to six digits does not explain the
-/// change.
+/// The poses in the order of the document; at least one. Quaternions are scaled to length 1, with a warning if rounding
+/// to six digits does not explain the change. Throws Error with the number of the pose (from 1) for unknown keys,
+/// missing, superfluous or infinite numbers, a quaternion whose length is more than 0.1 % off 1, and a matrix that is
+/// not a rigid motion.
 std::vector<ScanPose> poses_from_json(const nlohmann::ordered_json& document, const OnWarning& warn);
 
-/// The rotation of the quaternion x, y, z, w, scaled to length 1 as above. `place` begins every message: "line 3".
+/// The rotation of the quaternion x, y, z, w, scaled to length 1 as in poses_from_json(). `place` begins every message:
+/// "line 3".
 Eigen::Matrix3d rotation_of(std::span<const double, 4> quaternion, std::string_view place, const OnWarning& warn);
 
-/// The motion of a matrix in rows: a rotation in the upper left, the translation in the last column, 0 0 0 1 in the
-/// last row. The rotation is made orthonormal to the last digits; an orthonormal one keeps every bit. Throws Error for
-/// another last row, a number that is not finite, and a rotation that is more than 1e-6 off; the message names a scale
-/// or a reflection.
+/// The motion of a matrix, which is given row by row: a rotation in the upper left, the translation in the last column,
+/// 0 0 0 1 in the last row. The rotation is made orthonormal to the last digits; an orthonormal rotation keeps every
+/// bit. Throws Error for another last row, a number that is not finite, and a rotation that is more than 1e-6 off. The
+/// message names a scale or a reflection.
 RigidTransform motion_of(std::span<const double, 16> matrix, std::string_view place);
 
 }  // namespace scanmill

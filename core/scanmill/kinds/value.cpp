@@ -61,7 +61,7 @@ private:
     LengthUnit from_ = LengthUnit::unknown, to_;
 };
 
-/// Without a rotation only the frame changes: multiplication by the identity would change -0 to 0.
+/// Without a rotation only the frame changes, because multiplication by the identity would change -0 to 0.
 class Move : public FieldVisitor {
 public:
     explicit Move(const RigidTransform& pose) : pose_(pose), turns_(!pose.rotation.isIdentity(0)) {}
@@ -111,7 +111,7 @@ ReadGeometry geometry_of(const Value& value) {
     return read;
 }
 
-/// The numbers per row of a column of directions with this name; 0 for others.
+/// The numbers per row of a column of directions with this name; 0 for other columns.
 u32 numbers_of_directions(std::string_view column) {
     if (column == "normal" || column == "approach") return 3;
     return column == "corner-normals" ? 9 : 0;

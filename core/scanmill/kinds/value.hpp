@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A shared, immutable object of one of the kinds: what flows between steps.
+/// A shared, immutable object of one of the kinds. Values flow between the steps of a workflow.
 
 #include <cassert>
 #include <memory>
@@ -19,7 +19,7 @@ namespace scanmill {
 
 class Value {
 public:
-    /// Holds no object.
+    /// A value without an object.
     Value() = default;
     template <class T>
     Value(std::shared_ptr<T> object) : kind_(kind_of<std::remove_const_t<T>>()),
@@ -39,7 +39,7 @@ public:
         return kind_ == kind_of<T>() ? static_cast<const T*>(object_.get()) : nullptr;
     }
     const void* object() const { return object_.get(); }
-    /// Whether both have the same object.
+    /// Whether both values share one object.
     bool operator==(const Value& other) const { return object_ == other.object_; }
 
 private:
@@ -53,7 +53,7 @@ inline bool is_geometric(Kind kind) { return kind.info().is_geometric; }
 /// Copies the value's object (arrays are shared), visits the copy and returns it.
 Value visited(const Value& value, FieldVisitor& visitor);
 
-/// The frame; empty for kinds that are not geometric.
+/// The frame; nullopt for kinds that are not geometric.
 std::optional<Frame> frame_of(const Value& value);
 /// All positions, relative to the frame's origin; none for kinds that are not geometric.
 Buffer<Vec3> positions_of(const Value& value);
@@ -67,18 +67,20 @@ Value reframed(const Value& value, const Frame& frame);
 Value in_unit(const Value& value, LengthUnit unit);
 
 std::vector<PropertySpec> property_specs(Kind kind);
-/// In the order of property_specs(); undefined ones (genus of a non-manifold mesh) are left out.
+/// The properties, in the order of property_specs(). Undefined properties (genus of a non-manifold mesh) are left out.
 Metrics properties_of(const Value& value);
 
 /// The value with its world positions moved by the pose. Positions are only rotated and frame.origin is translated, so
-/// coordinates of 10^6 m keep their micrometres. Directions and columns of directions (see turned()) are rotated too;
-/// integer ones become float64. The frame gets the name `pose.to` unless that is empty; its unit stays, and the
-/// translation is converted to it. The identity changes no bit of a position. Throws Error if the pose has a unit and
-/// the value has none, for an origin outside the range of double, and for kinds without positions.
+/// coordinates of 10^6 m keep their micrometres. Directions and columns of directions (see turned()) are rotated, too;
+/// columns of integers become float64. The frame gets the name `pose.to` unless that is empty. Its unit stays; the
+/// translation is converted to this unit. The identity changes no bit of a position.
+///
+/// Throws Error if the pose has a unit and the value has none, for an origin outside the range of double, and for kinds
+/// without positions.
 Value placed(const Value& value, const RigidTransform& pose);
 
-/// The translation in another unit; unchanged if the pose has no unit. Throws Error with how to declare the unit if the
-/// pose has one and `unit` is unknown.
+/// The translation of the pose in another unit; unchanged if the pose has no unit. Throws Error if the pose has a unit
+/// and `unit` is unknown; the hint explains how to declare the unit.
 Vec3 translation_in(LengthUnit unit, const RigidTransform& pose);
 
 /// A column of directions rotated: `normal` and `approach` with three numbers per row, `corner-normals` with nine.

@@ -116,7 +116,7 @@ TEST(PatchesRefuse, WhatIsNotUsable) {
     patches = two_functions();
     EXPECT_NO_THROW(kind_of<PatchComplex>().info().require_usable(&patches));
     patches.partners = {1, 1};
-    EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 0 has partner 1, which has another one"));
+    EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 0 has partner 1, which has another partner"));
     patches.partners = {1};
     EXPECT_THAT(refusal(patches), HasSubstr("one row for each of the 2"));
     patches = two_functions();
