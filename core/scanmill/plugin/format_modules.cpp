@@ -42,7 +42,7 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
         const auto at_start = [&](const std::string& text) { return head.starts_with(text); };
         return std::ranges::any_of(begins, at_start) ? Recognition::certain : Recognition::no;
     };
-    row.memory_per_byte = 8;  // PCD, the only one that is read
+    row.memory_per_byte = 8;  // of PCD, the only format of a module that is read
     row.is_refused = !spec.reads;
     if (spec.reads)
         row.read = [module](const FileBytes& file, const ReadOptions& options) {
@@ -61,7 +61,7 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
     return row;
 }
 
-/// The row of an unusable module: reading a file of the format throws the reason.
+/// The row of an unusable module. Reading a file of this format throws Error with the reason.
 Format unusable_row(const std::string& name, const std::filesystem::path& manifest, const std::string& reason) {
     Format row;
     row.name = name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The available filters: manifests read from the module folders, modules loaded on first use.
+/// The available filters. Manifests are read from the module folders; modules are loaded on first use.
 ///
 /// Folders are searched in order; the first module of a name is used. An unusable manifest is kept with the reason; it
 /// is an error only for a workflow that uses the filter. Not thread-safe.
@@ -16,8 +16,8 @@
 
 namespace scanmill {
 
-/// The installed modules' folder, then those of SCANMILL_PLUGIN_PATH (separated by colons). Entries that are not
-/// absolute are ignored, because they depend on the working folder; `ignored` receives them.
+/// The folder of the installed modules, then the folders in SCANMILL_PLUGIN_PATH (separated by colons). Entries that
+/// are not absolute are ignored, because they depend on the working folder; `ignored` receives them.
 std::vector<std::filesystem::path> plugin_folders(std::vector<std::string>* ignored = nullptr);
 
 struct UnusableModule {
@@ -32,7 +32,7 @@ public:
 
     /// nullptr if there is no usable filter of that name.
     const FilterSpec* find(std::string_view name) const;
-    /// Sorted.
+    /// The names of the usable filters, sorted.
     std::vector<std::string> names() const;
     const std::vector<UnusableModule>& unusable() const { return unusable_; }
     /// The module's file. Pre: find(name).

@@ -6,7 +6,7 @@
 
 namespace scanmill {
 
-/// With the default value as it is written in a workflow: a text, or a list of texts.
+/// The JSON form contains the default value as it is written in a workflow: a text, or a list of texts.
 template <>
 struct JsonForm<ParameterSpec> : FieldsForm<ParameterSpec> {
     static Json write(const ParameterSpec& spec) {
@@ -32,7 +32,8 @@ struct JsonForm<ParameterSpec> : FieldsForm<ParameterSpec> {
     static Json schema() {
         Json object = FieldsForm::schema();
         const Json text{{"type", {"string", "array"}}, {"items", schema::type("string")}};
-        schema::add(object, "default", schema::described("As it is written in a workflow.", "", text), false);
+        schema::add(object, "default", schema::described("The default value as it is written in a workflow.", "", text),
+                    false);
         return object;
     }
 };

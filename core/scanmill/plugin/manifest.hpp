@@ -25,9 +25,9 @@ constexpr auto fields(const Manifest*) {
 
 struct FormatSpec {
     std::string name;  ///< "PCD"
-    /// Lower case, without the dot; the first is the one to propose.
+    /// Lower case, without the dot. The first extension is proposed to users.
     std::vector<std::string> extensions;
-    /// A file that begins with one of these is certainly of this format.
+    /// Beginnings of files: a file with one of these beginnings is certainly of this format.
     std::vector<std::string> begins;
     std::vector<Kind> writes;
     /// False for a format that is only written, for other programs.
@@ -53,11 +53,11 @@ constexpr auto fields(const FormatManifest*) {
 /// Indented JSON with a trailing newline, which reads back to an equal manifest.
 std::string to_json_text(const Manifest& manifest);
 std::string to_json_text(const FormatManifest& manifest);
-/// Throw Error with what is wrong with the text.
+/// Parse a manifest. Throw Error with the reason if the text is not a valid manifest.
 Manifest parse_manifest(std::string_view text);
 FormatManifest parse_format_manifest(std::string_view text);
 
-/// A filter's declaration as its manifest has it, for programs.
+/// A filter's declaration in the JSON form of its manifest, for other programs.
 nlohmann::ordered_json declaration_json(const FilterSpec& spec);
 nlohmann::ordered_json declaration_schema();
 

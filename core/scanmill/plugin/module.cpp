@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::string_view module_prefix = "scanmill-";
 
-/// The module that is being loaded. A static object in it may crash or end this process: then its name is the last
-/// thing that this process writes to stderr. Signal handlers reach no other state.
+/// The module that is being loaded. A static object in it may crash or end this process. The process then writes the
+/// module's name to stderr before it ends. The name is global, because signal handlers reach no other state.
 std::atomic<const char*> module_being_loaded = nullptr;
 constexpr std::array fatal_signals{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
 
@@ -60,7 +60,7 @@ private:
     std::array<struct sigaction, fatal_signals.size()> before_{};
 };
 
-/// noexcept: an exception of a static object's constructor must not pass through the loader.
+/// Is noexcept, because an exception of a static object's constructor must not pass through the loader.
 void* open_library(const std::filesystem::path& module) noexcept {
     const NamedIfFatal named(module.c_str());
     return ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);  // local: two modules may define the same symbol

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Loads one module. A loaded module is never unloaded: values it created may outlive everything else.
+/// Loads one module. A loaded module is never unloaded, because values that it created may outlive all other objects.
 
 #include <filesystem>
 
@@ -10,15 +10,18 @@
 namespace scanmill {
 
 /// Loads the module and writes its declaration to `declaration`, whose type follows from `magic`. `noun` is the word
-/// for such a module in messages: "filter". Throws Error naming the file: not a module, another magic, another ABI
-/// (both texts), another name, any exception while it declares itself. A module may crash or end the process while it
-/// is loaded; the process then first writes the module's name to stderr. Only workers load the modules of a run.
+/// for such a module in messages: "filter". Throws Error with the file's name for a file that is not a module, another
+/// magic, another ABI text (the message contains both texts), another name, and any exception while the module declares
+/// itself.
+///
+/// A module may crash or end the process while it is loaded; the process then first writes the module's name to stderr.
+/// Only workers load the modules of a run.
 void load_declaration(const std::filesystem::path& module, std::string_view magic, std::string_view noun,
                       const std::string& expected_name, void* declaration);
 
-/// The declaration of a filter's module. Throws Error as load_declaration().
+/// The declaration of a filter's module. Throws Error under the conditions of load_declaration().
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
-/// Throws Error with how to repair it: the module at this path and its manifest differ.
+/// Throws Error because the module at this path differs from its manifest. The hint states how to repair this.
 [[noreturn]] void throw_manifest_differs(const std::filesystem::path& module);
 
 /// The manifests in a folder of modules, scanmill-<name>.json, sorted; none if there is no such folder.

@@ -10,5 +10,6 @@
 #include "scanmill/filter/declare.hpp"
 #include "scanmill/plugin/plugin_descriptor.hpp"
 
-/// Exactly once per module; its body returns the declaration. SCANMILL_FILTER_NAME comes from scanmill_add_filter().
+/// Use it exactly once per module; its body returns the declaration. SCANMILL_FILTER_NAME comes from
+/// scanmill_add_filter().
 #define SCANMILL_FILTER() SCANMILL_MODULE("scanmill-filter", SCANMILL_FILTER_NAME, scanmill::FilterDeclaration)

@@ -33,7 +33,7 @@ namespace scanmill {
 
 inline constexpr const char* plugin_symbol = "scanmill_plugin";
 
-/// Its layout never changes.
+/// The layout of this struct never changes.
 struct PluginDescriptor {
     char magic[16];
     const char* abi;

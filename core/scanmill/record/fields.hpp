@@ -23,11 +23,11 @@
 
 namespace scanmill {
 
-/// How numbers change with the frame: under a motion, a shift of the origin, another unit.
+/// How numbers change if the frame changes by a motion, a shift of its origin or another unit.
 enum class Meaning {
-    plain,      ///< not at all
+    plain,      ///< they do not change
     position,   ///< a point relative to the frame's origin; JSON has world coordinates
-    direction,  ///< a unit vector, or zero: a motion turns it
+    direction,  ///< a unit vector, or zero; a motion rotates it
     length      ///< another unit scales it; not negative
 };
 
@@ -40,14 +40,14 @@ struct Field {
     const char* doc;
     const char* unit_text = "";
     Meaning meaning = Meaning::plain;
-    int exponent = 1;  ///< of a length
+    int exponent = 1;  ///< power of the length
     bool is_optional = false;
     bool is_nullable = false;
     bool is_flat = false;
     bool is_by_name = false;
     bool (*applies)(const Owner&) = nullptr;
 
-    /// "s", "bytes", "rad": of the number.
+    /// The unit of the number: "s", "bytes", "rad".
     constexpr Field unit(const char* text) const {
         Field field = *this;
         field.unit_text = text;
@@ -59,33 +59,33 @@ struct Field {
         field.exponent = length_exponent;
         return field;
     }
-    /// Absent where it has the value of a default-constructed one.
+    /// The member is absent in JSON if it has the value of a default-constructed object.
     constexpr Field optional() const {
         Field field = *this;
         field.is_optional = true;
         return field;
     }
-    /// A number that may be NaN, an index that may be the largest one, a text that may be empty: null in JSON, and
-    /// absent is read as null.
+    /// For a number that may be NaN, an index that may be the largest one, or a text that may be empty. JSON has null
+    /// for these values. An absent member is read as null.
     constexpr Field nullable() const {
         Field field = *this;
         field.is_nullable = true;
         return field;
     }
-    /// A struct whose fields are written among those of its owner.
+    /// The member is a struct whose fields are written among those of its owner.
     constexpr Field flat() const {
         Field field = *this;
         field.is_flat = true;
         return field;
     }
-    /// Metrics as an object of numbers by name, as results show them.
+    /// Metrics are written as an object of numbers by name, as results show them.
     constexpr Field by_name() const {
         Field field = *this;
         field.is_by_name = true;
         return field;
     }
-    /// Null, and unchanged when it is read, for objects that the condition does not hold for. The condition uses fields
-    /// without a condition.
+    /// If the condition does not hold for an object, the member is null in JSON and is not changed by reading. The
+    /// condition may use only fields without a condition.
     constexpr Field only_if(bool (*condition)(const Owner&)) const {
         Field field = *this;
         field.applies = condition;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// JSON of described structs (fields.hpp), both ways, and its JSON Schema.
+/// Converts described structs (fields.hpp) to JSON and back, and makes their JSON Schema.
 ///
-/// JsonForm<T> converts a type: numbers, texts, named enumerations, lists, optionals, variants and described structs
-/// have one here; other types specialise it beside themselves. The same form serves messages and caches as CBOR, where
-/// NaN keeps its bits and texts need not be UTF-8, and JSON text, where NaN is null.
+/// JsonForm<T> converts the type T. Numbers, texts, named enumerations, lists, optionals, variants and described
+/// structs have their form here; other types have a specialisation beside the type. Messages and caches are CBOR of the
+/// same form: NaN keeps its bits and texts need not be UTF-8. In JSON text, NaN is null.
 
 #include <fmt/format.h>
 
@@ -28,12 +28,12 @@ namespace scanmill {
 
 using Json = nlohmann::ordered_json;
 
-/// A value that has not the form of its type, with the path of its member. The sentence continues the path:
-/// "'touches[3].phi' is not a number". Callers see an Error instead: read_json().
+/// Thrown for a value that does not have the form of its type. `path` leads to the member; `sentence` continues the
+/// path: "'touches[3].phi' is not a number". read_json() throws an Error instead.
 struct JsonMismatch {
     std::string path, sentence;
 
-    /// The same, seen from the owner of the member `name`.
+    /// The same mismatch with the path from the owner of the member `name`, or from the list.
     JsonMismatch in(std::string_view name) &&;
     JsonMismatch in(std::size_t index) &&;
 };
@@ -45,18 +45,18 @@ template <class T>
 Json json_of(const T& value) {
     return JsonForm<T>::write(value);
 }
-/// Throws Error with the path of the first member that is missing, unknown or of another form. `subject` begins the
-/// sentence if that is the whole: "the document".
+/// Reads a value. Throws Error with the path of the first member that is missing, unknown or of another form. `subject`
+/// begins the message: "the document".
 template <class T>
 void read_json(const Json& json, T& value, std::string_view subject = "the document");
 
 [[noreturn]] void throw_mismatch(const JsonMismatch& mismatch, std::string_view subject);
 
-/// CBOR.
+/// The bytes of the value in CBOR.
 std::string cbor_of(const Json& json);
-/// Throws Error "… cannot be read" for other bytes.
+/// Reads CBOR. Throws Error "… cannot be read" for other bytes.
 Json json_from_cbor(std::string_view bytes, std::string_view subject);
-/// One line of text; bytes that are not UTF-8 are replaced.
+/// The value as one line of JSON text. Bytes that are not UTF-8 are replaced.
 std::string text_of(const Json& json);
 
 // Parts of schemas (draft 7).
@@ -68,15 +68,15 @@ inline Json list_of(Json item) { return {{"type", "array"}, {"items", std::move(
 inline Json map_of(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
 /// Adds a description: the text and, if not empty, the unit.
 Json described(std::string_view text, std::string_view unit, Json schema);
-/// The same, or null.
+/// The schema, extended to accept null.
 Json or_null(Json schema);
 Json names(std::span<const std::string_view> names);
 /// A list of exactly `size` items.
 Json tuple_of(std::size_t size, Json item);
-/// An object without members that may get some; members that are not added are refused.
+/// The schema of an object without members. add() adds members; other members are refused.
 Json object();
 void add(Json& object, const std::string& name, Json schema, bool is_required = true);
-/// A whole document: its title, `"scanmill": 1` and the members of `object`.
+/// The schema of a whole document: its title, `"scanmill": 1` and the members of `object`.
 Json document(std::string_view title, const Json& object);
 
 }  // namespace schema
@@ -180,7 +180,7 @@ struct JsonForm<T> {
     static Json schema() { return schema::names(names_of(static_cast<const T*>(nullptr))); }
 };
 
-/// An enumeration without names: its number, for messages.
+/// An enumeration without names is its number, for messages.
 template <class T>
     requires(std::is_enum_v<T> && !Named<T>)
 struct JsonForm<T> {
@@ -243,7 +243,7 @@ struct JsonForm<std::pair<First, Second>> {
     }
 };
 
-/// The coefficients, column by column.
+/// A matrix is the list of its coefficients, column by column.
 template <int rows, int columns>
 struct JsonForm<Eigen::Matrix<double, rows, columns>> {
     using Matrix = Eigen::Matrix<double, rows, columns>;
@@ -259,7 +259,7 @@ struct JsonForm<Eigen::Matrix<double, rows, columns>> {
     static Json schema() { return schema::tuple_of(rows * columns, JsonForm<double>::schema()); }
 };
 
-/// An object of values by name, in their order.
+/// Pairs of names and values are an object, in the order of the pairs.
 template <class T>
 struct JsonForm<std::vector<std::pair<std::string, T>>> {
     using Pairs = std::vector<std::pair<std::string, T>>;
@@ -308,7 +308,7 @@ struct JsonForm<std::monostate> {
     static void read(const Json&, std::monostate) {}
 };
 
-/// [index of the alternative, its value].
+/// A variant is the list [index of the alternative, its value].
 template <class... Types>
 struct JsonForm<std::variant<Types...>> {
     static Json write(const std::variant<Types...>& value) {
@@ -342,7 +342,8 @@ inline constexpr bool is_std_optional = false;
 template <class T>
 inline constexpr bool is_std_optional<std::optional<T>> = true;
 
-/// Described structs. A frame's origin is added to positions by the owner of the frame, before and after.
+/// The form of described structs. Positions must be world coordinates: the owner of the frame adds its origin before
+/// writing and subtracts it after reading.
 template <Described T>
 struct FieldsForm {
     static Json write(const T& object) {
@@ -486,7 +487,7 @@ private:
         if constexpr (std::unsigned_integral<Member>) return std::numeric_limits<Member>::max();
         return Member();
     }
-    /// NaN stays NaN, which JSON text writes as null.
+    /// Whether the value is written as null here. NaN stays NaN; only JSON text contains null for it.
     template <class Member>
     static bool is_undefined(const Member& member) {
         if constexpr (std::unsigned_integral<Member> || std::same_as<Member, std::string>)
