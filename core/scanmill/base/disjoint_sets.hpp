@@ -19,7 +19,7 @@ public:
         while (parent_[element] != element) element = parent_[element] = parent_[parent_[element]];
         return element;
     }
-    /// Merges the sets of `a` and `b`. Returns false if they were one set already.
+    /// Merges the sets of `a` and `b`. Returns false if both were in the same set already.
     bool unite(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Errors that users cause or meet: one sentence that a user can act on, a hint, and where it happened.
+/// Errors that users cause or meet. An error has one sentence that a user can act on, a hint, and frames that state
+/// where it happened.
 ///
 /// The function that throws writes the sentence (what was found, what is needed, with numbers). Each layer that passes
 /// the error on adds one frame, innermost first: "in step 'delaunay' (object.yaml:14:5)", "on scan 'plate.ply'".

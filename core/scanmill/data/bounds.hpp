@@ -47,7 +47,7 @@ struct FiniteBounds {
     BoundingBox box;
     bool finite = true;
 
-    /// Extends the bounds to those of more positions.
+    /// Extends the bounds by the bounds of more positions.
     void add(const FiniteBounds& more);
     /// Whether all positions are finite and inside `outer`.
     bool are_within(const BoundingBox& outer) const;

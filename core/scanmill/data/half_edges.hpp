@@ -32,7 +32,7 @@ struct ByVertex {
     std::vector<VertexHalfEdge> half_edges;  ///< every group is sorted by edge, then by number
 };
 
-/// Cost: linear where no vertex has many edges, 24 bytes per triangle and 8 per vertex.
+/// Cost: linear if no vertex has many edges, 24 bytes per triangle and 8 per vertex.
 ByVertex by_smaller_vertex(const TriangleMesh& mesh);
 
 /// Calls action(smaller vertex, half-edges of one edge) for every edge, by smaller and then by larger vertex.

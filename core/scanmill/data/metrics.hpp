@@ -13,8 +13,8 @@
 
 namespace scanmill {
 
-/// What a metric's number counts or measures. Lengths are in the scan's unit, angles in radians, ratios plain
-/// fractions.
+/// The quantity that a metric's number counts or measures. Lengths are in the scan's unit, angles in radians, ratios
+/// plain fractions.
 enum class Unit { count, length, area, volume, angle, ratio, seconds, number, boolean };
 constexpr std::array<std::string_view, 9> names_of(const Unit*) {
     return {"count", "length", "area", "volume", "angle", "ratio", "seconds", "number", "boolean"};
@@ -49,7 +49,7 @@ constexpr auto fields(const Metrics*) {
 
 /// "3000", "0.0125", "yes": a metric's number for people; angles in degrees, ratios in percent.
 std::string display(const Metric& metric);
-/// The same with the unit of lengths: "0.0125 mm", "3.2 u²".
+/// A metric's number with its unit: "0.0125 mm", "3.2 u²". `unit` is the unit of lengths.
 std::string display(const Metric& metric, LengthUnit unit);
 
 }  // namespace scanmill

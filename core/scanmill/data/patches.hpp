@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 4> names_of(const PatchKind*) {
     return {"face", "edge", "sharp", "continuation"};
 }
 
-/// What F is in a tetrahedron with two rows.
+/// The function F in a tetrahedron with two rows.
 enum class Combine : u8 {
     none,  ///< one row
     max,  ///< the larger function, at a convex edge
@@ -49,7 +49,8 @@ struct PatchComplex {
     static constexpr u32 no_partner = ~u32(0);
 
     Frame frame;
-    /// #vertices, relative to frame.origin: those of the mesh in its order, then base points, apexes and edge points.
+    /// #vertices, relative to frame.origin: the vertices of the mesh in its order, then base points, apexes and edge
+    /// points.
     Buffer<Vec3> positions;
     /// #tetrahedra; corners in the order that PatchKind states. If a triangle is not divided, its `face` row has the
     /// triangle's three corners and the apex. Tetrahedra inside the object are mirrored: their orientation is negative.

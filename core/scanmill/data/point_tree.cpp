@@ -144,7 +144,7 @@ struct ComesBefore {
 
 /// Finds all points within a radius that contains enough points, then chooses the nearest of these points.
 ///
-/// The points of a leaf are searched together, with a radius derived from the one that the previous leaf needed.
+/// The points of a leaf are searched together, with a radius derived from the radius that the previous leaf needed.
 /// Counting shows whether the radius was large enough for a point. The few points with too few neighbours are searched
 /// again; their radius is the distance of the (count + 1)-th point in a node around them.
 class NeighbourSearch {

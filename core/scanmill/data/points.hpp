@@ -44,7 +44,7 @@ Array<u32> finite_rows(std::span<const Vec3> positions);
 /// itself is then too long. Cost: one pass; if the box is too long, also one selection per axis.
 Array<u32> valid_rows(std::span<const Vec3> positions);
 
-/// What happens to the invalid rows of a scan when it enters a workflow.
+/// The treatment of invalid rows in a scan that enters a workflow.
 enum class InvalidRows {
     by_format,  ///< drop if the file's format writes NaN for a ray without a return, else refuse
     refuse,

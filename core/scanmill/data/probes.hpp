@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 5> names_of(const ProbeReason*) {
     return {"none", "concave", "too-narrow", "too-tilted", "obstructed"};
 }
 
-/// What the ball meets first if it moves against the mesh.
+/// The first contact of the ball if it moves against the mesh.
 enum class ProbeContact : u8 {
     none,  ///< not simulated: the touch is not made
     edge,  ///< the part, near T

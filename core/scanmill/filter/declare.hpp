@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How a filter declares itself, in one expression (see filters/voxel_thin/plugin.cpp).
+/// The declaration of a filter, in one expression (see filters/voxel_thin/plugin.cpp).
 ///
 /// A parameter is bound to a field of the params struct: the field's type determines the parameter's type, its
 /// initialiser the default. Constraints follow the help text, in any order:

@@ -83,7 +83,7 @@ template <class T>
 Kind kind_of();
 
 inline std::string_view name_of(Kind kind) { return kind.name(); }
-/// Every kind: points, mesh, tets, features, patches, probes, transform, metrics, then the registered ones.
+/// Every kind: points, mesh, tets, features, patches, probes, transform, metrics, then the registered kinds.
 std::vector<Kind> all_kinds();
 std::optional<Kind> kind_named(std::string_view name);
 /// "points, mesh, tets, features, patches, probes, transform, metrics", for messages.

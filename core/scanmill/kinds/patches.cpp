@@ -29,8 +29,8 @@ std::size_t number_of_patches(const PatchComplex& patches) {
     return most;
 }
 
-/// Throws Error unless `row` has a partner exactly if its function is combined with another one. The partner must be
-/// another row with the same points, the same side and the same rule; its partner must be `row`.
+/// Throws Error if `row` has a partner but no rule to combine functions, or a rule but no partner. Throws Error unless
+/// the partner is another row with the same points, side and rule, and its partner is `row`.
 void require_partner(const PatchComplex& patches, std::size_t row) {
     const u32 partner = patches.partners[row];
     if ((partner == PatchComplex::no_partner) != (patches.combine[row] == Combine::none))

@@ -62,8 +62,8 @@ Buffer<Vec3> positions_of(const Value& value);
 /// Values without positions are returned unchanged.
 Value reframed(const Value& value, const Frame& frame);
 
-/// The same geometry in another unit: positions, the frame's origin, other lengths, and columns by their length
-/// exponent. Pre: neither unit is unknown.
+/// The same geometry in another unit. Converts positions, the frame's origin, other lengths, and columns according to
+/// their length exponent. Pre: neither unit is unknown.
 Value in_unit(const Value& value, LengthUnit unit);
 
 std::vector<PropertySpec> property_specs(Kind kind);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The manifest of a module: its declaration as JSON, written at build time beside the module, so that listing,
-/// checking and schema generation load no code.
+/// The manifest of a module: its declaration as JSON, written at build time beside the module. Listing, checking and
+/// schema generation therefore load no code.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace scanmill {
 
-/// What a filter's module declares.
+/// The declaration of a filter's module.
 struct Manifest {
     std::string abi;
     FilterSpec spec;
@@ -41,7 +41,7 @@ constexpr auto fields(const FormatSpec*) {
                       field("writes", &T::writes), field("reads", &T::reads)};
 }
 
-/// What a file format's module declares.
+/// The declaration of a file format's module.
 struct FormatManifest {
     std::string abi;
     FormatSpec spec;

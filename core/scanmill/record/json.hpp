@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 struct JsonMismatch {
     std::string path, sentence;
 
-    /// The same mismatch with the path from the owner of the member `name`, or from the list.
+    /// The same mismatch with the path from the owner of the member `name`, or from the list of the item `index`.
     JsonMismatch in(std::string_view name) &&;
     JsonMismatch in(std::size_t index) &&;
 };

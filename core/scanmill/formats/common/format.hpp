@@ -47,7 +47,8 @@ struct WriteOptions {
     std::function<void(std::string_view)> on_bytes = {};
     /// Called if the coordinates in the file need `shift` added to become world coordinates. May be empty.
     std::function<void(const Vec3& shift)> on_shift = {};
-    /// Called with one sentence if the mesh is closed and the written mesh is not. If empty, the sentence is a warning.
+    /// Called with one sentence if the mesh is closed and the written mesh is not. If this function is empty, the
+    /// sentence becomes a warning.
     std::function<void(std::string sentence)> on_opened = {};
     /// Names of columns that filters added. Such columns are left out without a warning.
     std::set<std::string, std::less<>> added_columns = {};
@@ -108,14 +109,14 @@ std::string extension_of(const std::filesystem::path& path);
 /// The file's name without the extension and without a `.gz` after it: "scan".
 std::string stem_of(const std::filesystem::path& path);
 
-/// Every format, in the order of trials and lists: the built-in ones, then those of modules.
+/// Every format, in the order of trials and lists: built-in formats, then the formats of modules.
 std::span<const Format> formats();
 
 /// The formats of loadable modules. Defined in plugin/format_modules.cpp, which loads them.
 std::vector<Format> module_formats();
 
-/// The format of a file: the first that is certain of its content, else that of its extension, else the first that
-/// finds the content plausible. Throws Error with the file's first bytes if no format matches.
+/// The format of a file: the first format that is certain of the content, else the format of the extension, else the
+/// first format that finds the content plausible. Throws Error with the file's first bytes if no format matches.
 const Format& format_of(const FileBytes& file);
 
 }  // namespace scanmill

@@ -48,8 +48,8 @@ JoinedVertices joined_vertices(const TriangleMesh& mesh, const std::function<Vec
 u64 collapsed_triangles(const TriangleMesh& mesh, const JoinedVertices& joined);
 
 /// The triangles to write in a format without vertex numbers, whose readers join equal positions. These are all
-/// triangles except the collapsed ones, with a warning about these. Calls WriteOptions::on_opened, or warns, if the
-/// file is not closed although the mesh is. Throws Error if every triangle has two corners at one position.
+/// triangles except the collapsed ones. Warns about the collapsed triangles. Calls WriteOptions::on_opened, or warns,
+/// if the file is not closed although the mesh is. Throws Error if every triangle has two corners at one position.
 Buffer<Triangle> triangles_of_positions(const TriangleMesh& mesh, const JoinedVertices& joined, std::string_view format,
                                         const WriteOptions& options);
 

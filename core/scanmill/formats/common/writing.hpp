@@ -70,7 +70,7 @@ private:
     std::set<std::string> taken_;
 };
 
-/// The columns that text formats write after the coordinates; nullptr where one is absent or has another form.
+/// The columns that text formats write after the coordinates; nullptr for a column that is absent or has another form.
 struct TextColumns {
     explicit TextColumns(const ColumnTable& columns);
 

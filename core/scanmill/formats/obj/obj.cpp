@@ -47,7 +47,7 @@ std::optional<Corner> parse_corner(std::string_view token) {
 /// left out.
 enum class Subject { shape, object, group, material, smoothing, library, line, point, free_form, display, unknown };
 
-/// The keywords of each subject: those of the manual and those of older versions that it lists.
+/// The keywords of each subject, from the manual and from the older versions that the manual lists.
 constexpr std::array<std::string_view, 10> keywords_of{
     " v vn vt f fo ",
     " o ",

@@ -19,7 +19,7 @@ constexpr TextRules tagged_rules{.comment = '#'};
 
 bool is_tag(std::string_view word) { return word.size() == 1 && std::isalpha(static_cast<unsigned char>(word[0])); }
 
-/// Whether the text's first row is one of p, d, s or g and three numbers.
+/// Whether the text's first row is one of the letters p, d, s and g, followed by three numbers.
 bool has_tagged_points(std::string_view text) {
     TextCursor cursor(text, tagged_rules);
     if (!cursor.next_row()) return false;
