@@ -82,8 +82,8 @@ TEST_F(Storage, FilesThatMayNotGrow_FailWhatCannotBeWritten) {
     limited.file_limit = 200'000;
     const ProgramResult result = scanmill_program({"batch", "b.yaml", "-o", "out", "--keep", "always"}, limited);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_02.xyz"), HasSubstr("cannot be passed on"), HasSubstr("TMPDIR"),
-                                  HasSubstr("does not store new results")));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_02.xyz"), HasSubstr("cannot be passed to the next step"),
+                                  HasSubstr("TMPDIR"), HasSubstr("does not store new results")));
     EXPECT_EQ(outputs().size(), 1u) << "the small one, and nothing half-written";
     const Json run = recorded(1);
     EXPECT_EQ(count(run["cells"], "cause", "output"), 1u);

@@ -77,10 +77,10 @@ std::string steps_times_variants() {
 }
 
 const std::vector<HostileWorkflow> hostile_workflows{
-    {"AliasesOfAliases", bomb_of_aliases, "unfolds to more than 1000000 nodes"},
-    {"AnchorsAroundAnchors", bomb_of_anchors, "unfolds to more than 1000000 nodes"},
-    {"AliasesOfALongText", bomb_of_text, "unfolds to more than 67108864 bytes"},
-    {"ForksInForks", forks_in_forks, "unfolds to more than 500 levels"},
+    {"AliasesOfAliases", bomb_of_aliases, "expands to more than 1000000 nodes"},
+    {"AnchorsAroundAnchors", bomb_of_anchors, "expands to more than 1000000 nodes"},
+    {"AliasesOfALongText", bomb_of_text, "expands to more than 67108864 bytes"},
+    {"ForksInForks", forks_in_forks, "expands to more than 500 levels"},
     {"ListsInLists", [] { return head + "steps: " + std::string(100'000, '[') + std::string(100'000, ']'); },
      "invalid YAML"},
     {"MapsInMaps", [] { return head + "steps: " + repeated(100'000, [](const std::string&) { return "{a: "; }); },
@@ -93,7 +93,7 @@ const std::vector<HostileWorkflow> hostile_workflows{
      [] { return head + "steps: [" + repeated(490'000, [](const std::string&) { return "x, "; }) + "x]\n"; },
      "490001 errors in"},
     {"AMillionKeys", [] { return head + repeated(1'000'000, [](const std::string& i) { return "k" + i + ": 1\n"; }); },
-     "unfolds to more than 1000000 nodes"},
+     "expands to more than 1000000 nodes"},
     {"ManyParametersOfAStep",
      [] {
          return head + "steps:\n- voxel-thin:\n" +
@@ -106,7 +106,7 @@ const std::vector<HostileWorkflow> hostile_workflows{
                 repeated(200'000, [](const std::string& i) { return "  f" + i + ".ply: voxl-thin\n"; });
      },
      "200000 errors"},
-    {"AZeroByte", [] { return head + "name: a" + std::string(1, '\0') + "b\n"; }, "w.yaml:3:8: a zero byte"},
+    {"AZeroByte", [] { return head + "name: a" + std::string(1, '\0') + "b\n"; }, "w.yaml:3:8: found a zero byte"},
 };
 
 class HostileWorkflowTest : public testing::TestWithParam<HostileWorkflow> {};

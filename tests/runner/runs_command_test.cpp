@@ -128,7 +128,7 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
         return scanmill(arguments).out;
     };
     write("0.1 u");
-    EXPECT_THAT(dry(), HasSubstr("will run because it has not run on such inputs"));
+    EXPECT_THAT(dry(), HasSubstr("will run because it has not run with these inputs"));
     scanmill({"run", "w.yaml", "a.xyz", "-o", "out", "--keep", "always"});
     EXPECT_THAT(dry(), HasSubstr("0 to compute"));
     write("0.2 u");

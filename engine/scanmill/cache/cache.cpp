@@ -26,12 +26,12 @@ struct CachedFile {
     fs::path path;
     std::string_view kind;
     u64 bytes;
-    std::int64_t used;  ///< time of the last use in nanoseconds
+    std::int64_t used;  ///< time of the last use, in nanoseconds since 1970
 };
 
 std::int64_t nanoseconds(const timespec& time) { return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec; }
 
-/// Whether another process is writing the file. After an hour it counts as abandoned.
+/// Whether another process may be writing the file. A temporary file counts as abandoned after an hour.
 bool is_being_written(const fs::path& file, std::int64_t used) {
     constexpr std::int64_t hour = 3600 * std::int64_t(1'000'000'000);
     timespec now;
@@ -100,7 +100,8 @@ auto Cache::read(std::string_view kind, std::string_view name, Read&& read, bool
     const fs::path file = path_of(kind, name);
     try {
         auto found = read(file);
-        if (found && marks_use) ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // now; fails on a read-only folder
+        if (found && marks_use)
+            ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // sets the time to now; fails on a read-only folder
         return found;
     } catch (const Error& error) {
         std::error_code trouble;
@@ -127,7 +128,7 @@ std::optional<StepResult> Cache::step(std::string_view run_key) const {
 bool Cache::has_value(std::string_view content, u64 bytes) const {
     std::error_code absent;
     const auto found = fs::file_size(path_of("values", content), absent);
-    return !absent && (found == bytes || value(content));  // a damaged file is removed with a warning
+    return !absent && (found == bytes || value(content));  // value() removes a damaged file
 }
 
 std::optional<Value> Cache::value(std::string_view content) const {
@@ -181,7 +182,7 @@ std::string Cache::file_hash(const fs::path& file) {
     const auto memo = read(
         "files", name, [](const fs::path& of) { return read_checked(of, "file"); }, false);
     if (memo && memo->starts_with(description + " ")) {
-        // Both times are from the file system's clock.
+        // File systems set both times: when the hash was stored, and when the file last changed.
         struct stat written;
         constexpr time_t settled = 2;
         if (::stat(path_of("files", name).c_str(), &written) == 0 &&

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Results of steps, kept for later runs and shared by all runs on the machine.
+/// Stores results of steps for later runs. All runs on the machine share them.
 ///
-/// There are three kinds of files, each named by a 128-bit hash and never changed: plans/ (a step's plan key → its run
-/// key), steps/ (run key → StepResult) and values/ (content → value file). A fourth, files/, stores the hashes of
-/// scans. Any number of processes may read, write, clear and evict at once: files appear whole, and a missing file is
-/// computed again. A damaged file is removed with a warning and counts as missing. A read-only folder can still be
+/// Three folders hold files that are named by a 128-bit hash and never change: plans/ (plan key → run key of a step),
+/// steps/ (run key → StepResult) and values/ (content → value file). The folder files/ stores the hashes of scans.
+///
+/// Any number of processes may read, write, clear and evict at once. A file appears whole or not at all. Runs compute
+/// missing results again. A damaged file is removed with a warning and counts as missing. A read-only cache can be
 /// read.
 
 #include <atomic>
@@ -25,14 +26,14 @@ namespace scanmill {
 struct CacheInfo {
     std::filesystem::path folder;
     std::size_t steps = 0, values = 0;
-    u64 bytes = 0;  ///< of all files
-    u64 limit = 0;
+    u64 bytes = 0;  ///< total size of all files
+    u64 limit = 0;  ///< in bytes
 };
 
 /// Decides which values are stored.
 ///
-/// A value is stored when computing it again, together with the inputs that are not stored, takes more than twice as
-/// long as writing it. The writing speed is measured; 500 MB per second are assumed until then.
+/// A value is stored if computing it again takes more than twice as long as writing it. The time to compute includes
+/// inputs that are not stored. The writing speed is 500 MB per second until wrote() has measured it.
 class KeepRule {
 public:
     enum class Policy { never, worth, always };
@@ -44,7 +45,7 @@ public:
         constexpr double margin = 2;
         return seconds_to_make > margin * static_cast<double>(bytes) / bytes_per_second_;
     }
-    /// Measures the writing speed. Small files are ignored: creating them dominates.
+    /// Updates the writing speed. Small files are ignored, because creating a file takes most of their time.
     void wrote(u64 bytes, double seconds) {
         constexpr u64 least = 1 << 20;
         if (bytes < least || !(seconds > 0)) return;
@@ -60,7 +61,7 @@ private:
     double bytes_per_second_ = 5e8;
 };
 
-/// $XDG_CACHE_HOME/scanmill, else ~/.cache/scanmill. Throws Error when neither variable is an absolute path.
+/// $XDG_CACHE_HOME/scanmill, or else $HOME/.cache/scanmill. Throws Error if neither variable is an absolute path.
 std::filesystem::path default_cache_folder();
 
 class Cache {
@@ -68,30 +69,30 @@ public:
     static constexpr u64 default_limit = u64(20) << 30;
     using OnWarning = std::function<void(std::string)>;
 
-    /// Accesses no file yet. `limit`: bytes that evict() leaves.
+    /// Accesses no file. `limit` is the size in bytes above which evict() removes files.
     explicit Cache(std::filesystem::path folder, u64 limit = default_limit, OnWarning on_warning = {});
 
     std::optional<std::string> run_key(std::string_view plan_key) const;
     std::optional<StepResult> step(std::string_view run_key) const;
-    /// Whether there is a value file of this content and size.
+    /// Whether the cache has a value file of this content and size.
     bool has_value(std::string_view content, u64 bytes) const;
     std::optional<Value> value(std::string_view content) const;
 
-    /// These return false when the file cannot be written. The first time, they warn.
+    // The keep functions return false if the file cannot be written. Only the first failure gives a warning.
     bool keep_run_key(std::string_view plan_key, std::string_view run_key);
     bool keep_step(std::string_view run_key, const StepResult& result);
     bool keep_value(const EncodedValue& value);
 
-    /// The hash of a file's bytes, as content_hash(). It is stored with the file's path, size, inode and times, so that
-    /// an unchanged file is not read again. A file that was written within two seconds of being hashed is read again,
-    /// because a later change may not show in its times. Throws Error as content_hash().
+    /// The hash of a file's bytes, as content_hash() returns it. The cache stores it with the file's path, size, inode
+    /// and times. An unchanged file is not read again, unless it was hashed within two seconds after it was written: a
+    /// later change might not show in its times. Throws Error as content_hash() does.
     std::string file_hash(const std::filesystem::path& file);
 
     CacheInfo info() const;
-    /// If the limit is exceeded, removes the least recently used files until nine tenths of it are used. Returns the
-    /// bytes removed. Cost: one stat() per file.
+    /// If the limit is exceeded, removes the least recently used files until the rest takes nine tenths of the limit.
+    /// Returns the number of bytes removed. Cost: one stat() per file.
     u64 evict();
-    /// Removes all files of the cache; returns the bytes removed.
+    /// Removes all files of the cache. Returns the number of bytes removed.
     u64 clear();
 
     const std::filesystem::path& folder() const { return folder_; }

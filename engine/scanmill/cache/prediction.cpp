@@ -22,14 +22,15 @@ std::optional<StepResult> cached_result(const Cache& cache, const std::string& p
     return is_sound ? result : std::nullopt;
 }
 
-/// The cache does not record which policy an earlier run had, so only certain reasons are given.
+/// Explains why a value is not in the cache. The cache does not record the policies of earlier runs, so the text leaves
+/// open what cannot be known.
 std::string why_missing(const StepResult& result, const std::string& port, KeepRule::Policy policy) {
     const std::string what = port.empty() ? "content" : "'" + port + "'";
     if (policy == KeepRule::Policy::never)
-        return fmt::format("its {} is not in the cache, and the policy 'never' stores none", what);
+        return fmt::format("its {} is not in the cache, and the policy 'never' stores no values", what);
     const ResultOutput* output = result.output(port);
     if (output && KeepRule().is_worth(result.seconds, output->bytes))
-        return fmt::format("its {} is not in the cache: an earlier run did not store it, or it was removed since",
+        return fmt::format("its {} is not in the cache: an earlier run did not store it, or it was removed later",
                            what);
     return fmt::format("its {} was not stored, because it is quick to compute again", what);
 }
@@ -56,7 +57,7 @@ std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache, K
         else if (node.is_uncacheable)
             predicted.why = "it reads a folder or a file that cannot be hashed";
         else if (!predicted.cached)
-            predicted.why = step ? "it has not run on such inputs with such parameters" : "it was not read before";
+            predicted.why = step ? "it has not run with these inputs and parameters" : "it was not read before";
         else if (const auto missing = std::ranges::find_if(predicted.needed, is_missing);
                  missing != predicted.needed.end())
             predicted.why = why_missing(*predicted.cached, *missing, policy);

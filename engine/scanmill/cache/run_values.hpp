@@ -13,7 +13,7 @@
 
 namespace scanmill {
 
-/// Where a value comes from: a node, and its output port; empty for a file that is read.
+/// The origin of a value: a node, and its output port. The port is empty for a file that is read.
 using ValueSlot = std::pair<std::size_t, std::string>;
 
 class RunValues {
@@ -27,9 +27,9 @@ public:
     /// Throws Error if the file cannot be written.
     void put(const ValueSlot& slot, const EncodedValue& value);
     bool contains(const ValueSlot& slot) const;
-    /// Empty if it is not stored. Throws Error for a damaged file.
+    /// The value of the slot; empty if it is not stored. Throws Error for a damaged file.
     std::optional<Value> find(const ValueSlot& slot) const;
-    /// Values that are in use stay mapped.
+    /// Removes the value of the slot. A value in use stays valid.
     void remove(const ValueSlot& slot);
 
 private:

@@ -18,7 +18,7 @@ struct ResultOutput {
     std::string port;
     Kind kind = kind_of<PointCloud>();
     std::string content;  ///< EncodedValue::content()
-    u64 bytes = 0;        ///< of its value file
+    u64 bytes = 0;        ///< size of the value file
 
     bool operator==(const ResultOutput&) const = default;
 };
@@ -28,12 +28,12 @@ constexpr auto fields(const ResultOutput*) {
                       field("bytes", &R::bytes)};
 }
 
-/// What a step gave, without the values themselves: their content hashes name their files in the cache.
+/// The result of a step, without its values. The content hash of a value names its file in the cache.
 struct StepResult {
     std::vector<ResultOutput> outputs;
     ParameterSet resolved;  ///< lengths in the scan's unit; without parameters that name files
     Metrics metrics;
-    Metrics properties;  ///< of the primary output; empty unless requested
+    Metrics properties;  ///< properties of the primary output; empty unless requested
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
     double seconds = 0;  ///< run time of the filter

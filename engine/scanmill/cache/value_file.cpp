@@ -71,8 +71,8 @@ constexpr std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1
 
 Bytes padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) - bytes); }
 
-/// Adds every field to the header, and arrays to `arrays`, which share them; in the header an array is its index and
-/// its element size.
+/// Adds every field to `header`. An array is added to `arrays`, which shares its memory; the header holds its index in
+/// `arrays` and its element size.
 class FieldWriter : public FieldVisitor {
 public:
     void frame(const char* name, Frame& frame) override {
@@ -181,7 +181,7 @@ struct Preamble {
     u64 file_bytes;
     u64 reserved;
 
-    /// `array_hashes`: one digest per array, one after the other.
+    /// `array_hashes` is the concatenation of one digest per array.
     static Preamble of(const ValueFields& fields, std::string_view array_hashes) {
         Preamble preamble{};
         std::memcpy(preamble.magic, scanmill::magic.data(), scanmill::magic.size());
@@ -288,7 +288,7 @@ Value read_value(const std::filesystem::path& file, std::string_view content) tr
 
 namespace {
 
-/// The stream's cloud with arrays of the right size that have no memory.
+/// The stream's cloud without data: its arrays have the right sizes but null pointers.
 PointCloud cloud_without_data(const PointStream& stream) {
     PointCloud cloud;
     cloud.frame = stream.frame();
@@ -327,7 +327,8 @@ ValueName StreamedContent::of(const PointStream& stream, unsigned threads, const
                 for (const Column& column : piece.columns) (hash++)->add(column.bytes().span());
             });
     std::string hashes = positions_.digest();
-    for (ArrayHash& column : columns) hashes += column.digest() + ArrayHash().digest();  // no offsets
+    for (ArrayHash& column : columns)
+        hashes += column.digest() + ArrayHash().digest();  // the array of offsets is empty
     return Preamble::of(fields_of(std::make_shared<const PointCloud>(cloud)), hashes).name();
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Files of the cache: small checked files, and values as files of raw arrays, which readers map and do not parse.
+/// Files of the cache: small checked files, and value files. A value file holds raw arrays, which readers map into
+/// memory without parsing.
 ///
-/// Layout of a value file, little-endian: 64 bytes of preamble (magic, length of the header, 128-bit XXH3 hashes of
-/// header and arrays, length of the file), the header (CBOR: kind, frame, the name and shape of every array), zeros up
-/// to a multiple of 64, then the arrays, each on a multiple of 64. The hash of the arrays is the hash of one hash per
-/// array, so that arrays can be hashed side by side. Equal values give equal bytes. Numbers keep their bits.
+/// Layout of a value file, little-endian:
+/// - a preamble of 64 bytes: magic, length of the header, 128-bit XXH3 hashes of header and arrays, length of the file;
+/// - the header in CBOR: kind, frame, and the name and shape of every array;
+/// - zeros up to a multiple of 64 bytes, then the arrays, each beginning at a multiple of 64 bytes.
+///
+/// Every array has its own hash, so arrays can be hashed independently. The preamble holds the hash of these hashes.
+/// Equal values give equal bytes. Numbers keep their bits.
 
 #include <filesystem>
 #include <functional>
@@ -24,19 +28,19 @@ struct XXH3_state_s;
 namespace scanmill {
 
 /// Writes a line with the kind, the file's name and the hash of the content, then the content. The file appears whole
-/// or not at all, without being synced to the disk. Throws Error.
+/// or not at all. It is not synced to the disk. Throws Error if it cannot be written.
 void write_checked(const std::filesystem::path& file, std::string_view kind, std::string_view content);
 
-/// Empty if the file does not exist. Throws Error if it has another kind, was written under another name, or its bytes
-/// changed.
+/// The content that write_checked() wrote; empty if the file does not exist. Throws Error if the file has another kind,
+/// was written under another name, or has changed bytes.
 std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind);
 
-/// The hash of an array that arrives in parts, padded with zeros as in a value file.
+/// Computes the hash of an array that arrives in parts. The array is padded with zeros as in a value file.
 class ArrayHash {
 public:
     ArrayHash();
     void add(std::span<const std::byte> part);
-    /// 128-bit XXH3 of everything added, most significant byte first. Once.
+    /// The 128-bit XXH3 hash of everything added, most significant byte first. Pre: called once, after the last add().
     std::string digest();
 
 private:
@@ -50,10 +54,10 @@ private:
 /// The identity of a value in the cache.
 struct ValueName {
     std::string content;  ///< 32 hexadecimal digits, equal for equal values
-    u64 bytes = 0;        ///< of its file
+    u64 bytes = 0;  ///< size of the value file
 };
 
-/// A value ready to be written; shares its arrays.
+/// A value ready to be written. It shares the value's arrays and does not copy them.
 class EncodedValue {
 public:
     /// Cost: one pass over every byte of the value, to hash it.
@@ -61,10 +65,10 @@ public:
 
     const Value& value() const { return value_; }
     const std::string& content() const { return name_.content; }
-    /// Bytes of the file.
+    /// Size of the value file in bytes.
     u64 size() const { return name_.bytes; }
-    /// The file appears whole or not at all. It is not synced to the disk; the hashes reveal what a power cut damages.
-    /// Throws Error for an unwritable folder or a full disk.
+    /// Writes the value file, which appears whole or not at all. The file is not synced to the disk: after a power cut,
+    /// the hashes reveal damage. Throws Error for an unwritable folder or a full disk.
     void write(const std::filesystem::path& file) const;
 
 private:
@@ -74,19 +78,21 @@ private:
     ValueName name_;
 };
 
-/// The value in the file. Its arrays are mapped as long as they are in use; the file may be removed meanwhile, but not
-/// shortened. Reads every byte once to check the hashes. Throws Error: no such file, not a value file, truncated, or
-/// changed bytes; with `content` given, also for a value of another content.
+/// Reads the value in the file, and every byte once to check the hashes. The arrays stay mapped while they are in use.
+/// Meanwhile the file may be removed, but not shortened. Throws Error if the file does not exist, is not a value file,
+/// is truncated or has changed bytes. Throws Error if `content` is given and the value has another content.
 Value read_value(const std::filesystem::path& file, std::string_view content = {});
 
 /// Computes the name that EncodedValue gives to the point cloud in a file, without loading the cloud.
 class StreamedContent {
 public:
-    /// To be called with every chunk that open_point_stream() reports: a scan near zero needs no second pass over them.
+    /// Adds the positions of one chunk that open_point_stream() reports. They save a second pass over the positions if
+    /// the scan is near zero.
     void add_world(std::span<const Vec3> positions) { positions_.add(std::as_bytes(positions)); }
-    /// Pre: add_world() got all positions of this stream; called once. Cost: one pass over the file if the cloud has
-    /// columns or is far from zero; up to four pieces per thread are in memory. `on_piece` is called for every piece,
-    /// from this thread; its exceptions end the pass.
+    /// The name of the stream's cloud. `on_piece` is called for every piece, from this thread; its exceptions end the
+    /// pass. Pre: add_world() got all positions of this stream; of() is called once.
+    /// Cost: one pass over the file if the cloud has columns or is far from zero, with up to four pieces per thread in
+    /// memory.
     ValueName of(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece = {});
 
 private:

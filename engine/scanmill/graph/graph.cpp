@@ -35,7 +35,7 @@ namespace {
 void require_fed(const RunRequest& request, const Plan& plan) {
     const std::vector<WorkflowInput>& inputs = plan.workflow.inputs;
     if (inputs.empty() && !request.scans.empty())
-        throw Error("the workflow takes no scans: it declares no inputs; found {}", request.scans.size());
+        throw Error("the workflow declares no inputs and takes no scans; scans given: {}", request.scans.size());
     if (!inputs.empty() && request.scans.empty())
         throw Error("no scan was given for the workflow's input '{}'", inputs.front().name)
             .hint("name at least one scan")
@@ -44,7 +44,7 @@ void require_fed(const RunRequest& request, const Plan& plan) {
     for (std::size_t i = 1; i < inputs.size(); ++i) others.push_back(inputs[i].name);
     for (const auto& [name, files] : request.inputs) {
         if (!inputs.empty() && name == inputs.front().name)
-            throw Error("the input '{}' is the workflow's first, which the scans feed", name)
+            throw Error("'{}' is the workflow's first input, which takes the scans", name)
                 .hint("name its files as scans")
                 .remedy(Remedy::name_scans);
         if (std::ranges::find(others, name) == others.end())
@@ -57,7 +57,9 @@ void require_fed(const RunRequest& request, const Plan& plan) {
         if (request.inputs.contains(name)) continue;
         const auto has_own = [&](const ScanFile& scan) { return scan.inputs.contains(name); };
         if (std::ranges::all_of(request.scans, has_own)) continue;
-        throw Error("the workflow's input '{}' has no file", name).hint("name one").remedy(Remedy::name_input_files);
+        throw Error("the workflow's input '{}' has no file", name)
+            .hint("name a file for this input")
+            .remedy(Remedy::name_input_files);
     }
 }
 
@@ -87,7 +89,7 @@ void require_fits(const RunRequest& request, const Plan& plan) {
     require_fed(request, plan);
     const auto is_points = [](const WorkflowInput& input) { return input.kind == kind_of<PointCloud>(); };
     if (request.invalid != InvalidRows::by_format && std::ranges::none_of(plan.workflow.inputs, is_points))
-        throw Error("the workflow has no input of points, so no rows are invalid");
+        throw Error("the rule for invalid rows has no effect: the workflow has no input of points");
     require_known_names(request, plan);
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 /// The graph of everything that one run computes: plans applied to scans.
 ///
-/// Nodes are files to read (leaves) and steps to run, identified by their plan key. Equal keys are one node, also for
-/// two files with equal content and for different workflows. A cell is one scan under one variant of one workflow. The
-/// graph contains all output files before anything runs.
+/// Nodes are files to read (leaves) and steps to run, identified by their plan key. Two files with equal content have
+/// equal keys and are one node; so are equal steps of different workflows. A cell is one scan under one variant of one
+/// workflow. The graph contains all output files before anything runs.
 
 #include <filesystem>
 #include <functional>
@@ -23,7 +23,7 @@
 
 namespace scanmill {
 
-/// A file, with properties that it may not contain.
+/// An input file, with properties that the file itself may lack.
 struct ScanFile {
     ScanFile(std::filesystem::path file) : path(std::move(file)) {}
 
@@ -39,17 +39,17 @@ struct ScanFile {
 /// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
 struct RunRequest {
     std::vector<ScanFile> scans;  ///< for the first input: one per run, or all in one run if the input is a list
-    /// For the other inputs, in every run; without it, the scan's own files, or those of the first scan if the first
-    /// input is a list.
+    /// Files for inputs other than the first, used in every run. An input that is absent here takes ScanFile::inputs of
+    /// the scan, or of the first scan if the first input is a list.
     std::map<std::string, std::vector<std::filesystem::path>> inputs;
     std::vector<std::filesystem::path> protected_files;  ///< more files that no output may replace
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< unit of every file; unknown: from the workflow or the file
     InvalidRows invalid =
-        InvalidRows::by_format;  ///< of every file of points; by_format: from the workflow or the format
+        InvalidRows::by_format;  ///< rule for every file of points; by_format: from the workflow or the format
     std::uint64_t seed = 0;
     std::vector<std::string> only;  ///< variants; empty: all
-    std::string until;  ///< last step to run, in the variants that have it; empty: all steps
+    std::string until;  ///< last step to run; variants without this step do not run. Empty: all steps
     std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
 };
 
@@ -81,8 +81,8 @@ struct LeafSource {
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the file
     std::string frame;  ///< empty: from the file
     std::optional<RigidTransform> pose;
-    InvalidRows invalid = InvalidRows::by_format;  ///< of points
-    bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key, as the values are equal
+    InvalidRows invalid = InvalidRows::by_format;  ///< only for points
+    bool is_streamed = false;  ///< read in blocks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
 };
 constexpr auto fields(const LeafSource*) {
@@ -101,14 +101,14 @@ struct RunNode {
     std::string key;  ///< plan key: identifies the result before anything runs
     std::string code;  ///< steps only: hash of filter, builds, seed and the content of files that parameters name
     std::size_t plan = 0;  ///< index into RunGraph::plans
-    std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf
+    std::optional<std::size_t> step;  ///< index into Plan::steps; empty for a leaf
     LeafSource leaf;
     bool is_scan = false;  ///< leaves only: it feeds the workflow's first input
     std::vector<ParameterFile> parameter_files;  ///< steps only
-    bool is_uncacheable = false;  ///< it, or a node before it, reads a folder or a file that cannot be hashed
+    bool is_uncacheable = false;  ///< the node or one upstream reads a folder or a file that cannot be hashed
     std::string unreadable;  ///< leaves only: why the content could not be hashed
     std::vector<NodeInput> inputs;
-    std::size_t scan = 0;  ///< index of the first cell's scan
+    std::size_t scan = 0;  ///< index into RunGraph::scan_names; the scan of the first cell that contains the node
 };
 
 struct RunOutput {
@@ -119,7 +119,7 @@ struct RunOutput {
 
 struct RunCell {
     std::size_t plan;  ///< index into RunGraph::plans
-    std::size_t scan;
+    std::size_t scan;  ///< index into RunGraph::scan_names
     std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
@@ -127,12 +127,12 @@ struct RunCell {
 
 struct RunGraph {
     std::vector<std::shared_ptr<const Plan>> plans;
-    std::vector<std::string> scan_names;  ///< as given; the workflow's name if all scans are one list
+    std::vector<std::string> scan_names;  ///< paths as given; the workflow's name if it takes a list of scans or none
     std::vector<RunNode> nodes;
     std::vector<RunCell> cells;
     std::uint64_t seed = 0;
 
-    /// nullptr for a leaf.
+    /// The step of a node; nullptr for a leaf.
     const PlannedStep* step(const RunNode& node) const {
         return node.step ? &plans[node.plan]->steps[*node.step] : nullptr;
     }
@@ -151,29 +151,31 @@ struct GraphPart {
 
 using HashOfFile = std::function<std::string(const std::filesystem::path&)>;
 
-/// `hash` returns the hash of a file's bytes: content_hash() or Cache::file_hash(). Every file is read once. A scan
-/// or another input that cannot be read only marks its node; a parameter's file that cannot be read is reported by the
-/// filter. Throws Error for a request that does not fit its plan, for two cells that would write one file, and for
-/// outputs that are an input as well, existing or not, or leave the output folder. Pre: all parts have one seed and one
+/// Builds the graph of all parts. `hash` returns the hash of a file's bytes: content_hash() or Cache::file_hash(). It
+/// is called at most once per file. An input that cannot be read only marks its node. A parameter's file that cannot be
+/// read makes the step uncacheable; its filter reports the error.
+///
+/// Throws Error if a request does not fit its plan, if two cells would write the same file, and if an output would
+/// replace or create an input, or would lie outside the output folder. Pre: all parts have the same seed and the same
 /// output folder.
 RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash = content_hash);
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);
 
-// Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Only opening
-// the file shows whether its format allows it; otherwise the scan is loaded, with the same results.
+// Streams. A scan is read in blocks, and never loaded whole, if all steps that read it can read a stream. Some files
+// turn out not to allow streaming when they are opened; such a scan is loaded whole, with the same results.
 
-/// Whether the step can read its scan as a stream: its filter can, the scan is the only one of its `inputs` wired
-/// values, the parameters that this requires have values, and no parameter is in spacings, which need all points at
-/// once.
+/// Whether the step can read its scan as a stream. The filter must be able to, and the scan must be its only wired
+/// value (`inputs` is 1). The parameters in StreamSpec::given must have values. No parameter may be in spacings,
+/// because the spacing is computed from all points at once.
 bool can_stream(const PlannedStep& step, std::size_t inputs);
 
-/// Whether scans of this workflow input are streamed if their files allow it: they are points, at least one step reads
-/// them, all these steps can stream, and they are not outputs themselves.
+/// Whether scans of this workflow input are streamed if their files allow it. They must be points, at least one step
+/// must read them, every such step must be able to stream, and no output may be the scan itself.
 bool is_streamed(const Plan& plan, std::size_t input);
 
-/// Sets LeafSource::is_streamed as above, for the steps and outputs in the graph. Leaves with a pose are not streamed,
-/// nor files whose first bytes show that they cannot be.
+/// Sets LeafSource::is_streamed of every leaf by the same rules, applied to the steps and outputs in the graph. Leaves
+/// with a pose are not streamed. Files whose first bytes show that they cannot be streamed are not streamed either.
 void mark_streams(RunGraph& graph);
 
 }  // namespace scanmill

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// Increases when the meaning of a plan key or of a value's content name changes.
 constexpr std::string_view key_scheme = "6";
 
-/// The builds that read files: the core, and the modules of formats.
+/// The hashes of the builds that read files: the core, and the modules of formats.
 std::string builds_of_readers(const std::string& core) {
     std::string builds = core;
     for (std::filesystem::path module : module_manifests(installed_format_folder())) {
@@ -97,7 +97,7 @@ class FileContents {
 public:
     struct Content {
         std::string hash;  ///< hash of the file's bytes; unique for a file that cannot be read
-        std::string why_unreadable;  ///< with the hint; empty: it can be read
+        std::string why_unreadable;  ///< error and hint; empty for a readable file
     };
 
     explicit FileContents(const HashOfFile& hash) : hash_(hash) {}
@@ -174,7 +174,7 @@ private:
         for (const ScanFile& scan : request_->scans) add_cells(scan_index(scan.path.string()), &scan);
     }
 
-    /// Parts that name the same scan share it.
+    /// The index of the scan in RunGraph::scan_names. Parts that name the same scan share one index.
     std::size_t scan_index(const std::string& name) {
         const auto [found, is_new] = scan_of_name_.emplace(name, graph_.scan_names.size());
         if (is_new) graph_.scan_names.push_back(name);
@@ -198,7 +198,8 @@ private:
             const TemplateValues values{file ? stem_of(file->path) : scan_name, planned.name, workflow_name(*plan_),
                                         file ? folder_name(file->path) : scan_name};
             for (const auto& [name, source] : outputs(planned)) {
-                if (source.step && !node_of_step.contains(*source.step)) continue;  // after the last step to run
+                if (source.step && !node_of_step.contains(*source.step))
+                    continue;  // the output's step comes after the last step to run
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
                 const std::string writer = cell_text(scan_name, planned.name, parts_.size() > 1 ? values.workflow : "");
                 const std::string content = fmt::format("{} {} {}", node, scan, plan_->workflow.file);
@@ -280,7 +281,7 @@ private:
         return leaves;
     }
 
-    /// The files of an input other than the scans. Pre: require_fits().
+    /// The files of an input other than the first. Pre: require_fits() did not throw.
     std::vector<ScanFile> files_of(const std::string& input, const ScanFile* file) const {
         if (const auto common = request_->inputs.find(input); common != request_->inputs.end())
             return {common->second.begin(), common->second.end()};
@@ -339,7 +340,7 @@ private:
     KeyBase base_;
     OutputFiles output_files_;
     RunGraph graph_;
-    std::map<std::string, std::size_t> node_of_key_;  // and its expectations
+    std::map<std::string, std::size_t> node_of_key_;  // by plan key and expectations
     std::map<std::string, std::size_t> scan_of_name_;
 };
 

@@ -18,7 +18,7 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
     return end == folder.end() || end->empty();
 }
 
-/// Absolute and without links, as far as it exists.
+/// The absolute path, with symbolic links resolved in the part of it that exists.
 fs::path real_path(const fs::path& path) {
     std::error_code trouble;
     fs::path real = fs::weakly_canonical(fs::absolute(path), trouble);
@@ -28,7 +28,9 @@ fs::path real_path(const fs::path& path) {
 
 fs::path real_folder(const fs::path& path) {
     fs::path folder = real_path(path);
-    return folder.has_filename() || folder == folder.root_path() ? folder : folder.parent_path();  // "out/"
+    return folder.has_filename() || folder == folder.root_path()
+               ? folder
+               : folder.parent_path();  // without the final slash of "out/"
 }
 
 }  // namespace
@@ -56,7 +58,7 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     const fs::path folder = real_path(file.parent_path());
     if (!lies_below(folder, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), folder.string())
-            .hint("a symbolic link below the output folder leads out of it; remove it");
+            .hint("remove the symbolic link that leads out of the output folder");
     for (const fs::path& replaced : {file, previous_of(file)}) {
         const Identity existing = identity(replaced);
         if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / replaced.filename()))
@@ -67,7 +69,7 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     return file;
 }
 
-/// Zeros for what does not exist.
+/// {0, 0} for a file that does not exist.
 OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
     struct stat status;
     if (::stat(file.c_str(), &status) != 0) return {0, 0};

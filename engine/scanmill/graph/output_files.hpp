@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The output files of a run, checked before it begins against each other, the inputs and the output folder.
+/// Checks the output files of a run before it begins: against each other, the inputs and the output folder.
 
 #include <filesystem>
 #include <set>
@@ -14,12 +14,13 @@ class OutputFiles {
 public:
     explicit OutputFiles(const std::filesystem::path& folder);
 
-    /// No output may replace this file, nor create it if it does not exist yet. Pre: nothing was added yet.
+    /// Forbids outputs to replace this file, or to create it if it does not exist. Pre: add() was not called yet.
     void protect(const std::filesystem::path& file);
 
-    /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
-    /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file, or previous_of() it, is an input, and when a link leads it out of the output folder.
+    /// Adds an output and returns its absolute path. `name` is relative to the output folder, in normal form. `writer`
+    /// names the cell in messages. Throws Error if an output with other content has the same path, or if one output's
+    /// path is the folder of another output. Throws Error if the path is an existing folder, if it or previous_of() it
+    /// is an input, and if a symbolic link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
@@ -33,11 +34,11 @@ private:
     std::set<std::filesystem::path> absent_inputs_;  // absolute, without links
 };
 
-/// Where an output of an earlier run is moved when its cell fails: `<output>.previous`.
+/// The path `<output>.previous`, to which an output of an earlier run is moved when its cell fails.
 std::filesystem::path previous_of(const std::filesystem::path& file);
 
-/// Moves an output and its description to previous_of() and its description, and replaces what is there. Returns
-/// whether there was such a file. Throws Error if it cannot be moved.
+/// Moves an output to previous_of() it, and its description beside it. Files already there are replaced. Returns
+/// whether the output or its description existed. Throws Error if a file cannot be moved.
 bool move_aside(const std::filesystem::path& file);
 
 }  // namespace scanmill

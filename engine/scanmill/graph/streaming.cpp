@@ -8,7 +8,7 @@ namespace scanmill {
 
 namespace {
 
-/// The steps and outputs that read one scan.
+/// Counts the steps and outputs that read one scan.
 struct Readers {
     std::size_t all = 0, streaming = 0;
 

@@ -13,7 +13,8 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t most_variants = 10'000;
-constexpr std::size_t most_steps = 500'000;  // in all variants together: each takes time and memory, shared or not
+constexpr std::size_t most_steps =
+    500'000;  // in all variants together; every step takes time and memory, even if variants share it
 
 std::string file_safe(std::string_view text) {
     std::string safe;
@@ -32,11 +33,11 @@ std::string file_safe(std::string_view text) {
 class Choices {
 public:
     virtual ~Choices() = default;
-    /// One of 0 … count - 1; `fork` identifies the fork within the workflow.
+    /// Returns a branch, 0 … count - 1. `fork` identifies the fork within the workflow.
     virtual std::size_t choose(const void* fork, std::size_t count) = 0;
 };
 
-/// Every combination once, the last fork fastest.
+/// Yields every combination of branches once. The branch of the last fork changes fastest.
 class EveryCombination : public Choices {
 public:
     std::size_t choose(const void*, std::size_t count) override {
@@ -58,10 +59,10 @@ private:
         std::size_t choice, count;
     };
     std::vector<Made> made_;
-    std::size_t next_ = 0;  // the fork to decide next
+    std::size_t next_ = 0;  // index into made_ of the fork to decide next
 };
 
-/// At every fork the first branch, then the next one each time the fork is reached again: every branch at least once.
+/// Takes the next branch each time a fork is reached, until every branch of every fork was taken at least once.
 class EachOnce : public Choices {
 public:
     std::size_t choose(const void* fork, std::size_t count) override {
@@ -121,8 +122,9 @@ private:
             const WrittenValue& written = values[choices_.choose(&values, values.size())];
             const std::size_t parts = name_parts_.size();
             std::optional<ChosenArgument> argument = replaced(step, parameter, written);
-            if (!argument) continue;  // an unknown parameter, or one whose text was wrong
-            const bool is_named = !written.literal.list && name_parts_.size() > parts;  // by the swept `$name` itself
+            if (!argument) continue;  // its `$name` is unknown or has no valid value
+            const bool is_named =
+                !written.literal.list && name_parts_.size() > parts;  // replaced() added the swept `$name`
             if (parameter.value.sweep && !is_named) name_sweep(step, parameter.name, argument->value);
             all.push_back(std::move(*argument));
         }
@@ -161,7 +163,7 @@ private:
         return chosen;
     }
 
-    /// Adds the chosen value to the variant's name, with its step when the parameter's name is there already.
+    /// Adds `name=value` to the variant's name. If the name appears already, puts the step's name before it.
     void name_sweep(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
         const std::string label = swept_.contains(name) ? step.name() + "." + name : name;
         swept_.insert(name);
@@ -174,7 +176,7 @@ private:
     Variant variant_;
     std::vector<std::string> name_parts_;
     std::set<std::string> swept_;  // names that appear in name_parts_
-    std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
+    std::map<std::string, const WrittenValue*> bound_;  // chosen values of swept workflow parameters
 };
 
 /// Calls `visit` with variants until it returns false.
@@ -185,7 +187,7 @@ void visit_all(const Workflow& workflow, const Settings& settings, const std::fu
     }
 }
 
-/// The exceeded limit, as "more than 7 variants"; empty within the limits.
+/// Names the exceeded limit, as "more than 7 variants"; empty if no limit is exceeded.
 std::string excess(const Workflow& workflow, const Settings& settings) {
     std::size_t variants = 0, steps = 0;
     visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
@@ -197,8 +199,8 @@ std::string excess(const Workflow& workflow, const Settings& settings) {
                                     : "";
 }
 
-/// Checks that every `$name` in a step is declared, and a single value within a list; that every setting is declared;
-/// and that every declared parameter is mentioned in the file.
+/// Checks that every `$name` and every setting is a declared parameter. A `$name` within a list must be a single value.
+/// Warns about declared parameters that the file does not use.
 class ReferenceCheck {
 public:
     ReferenceCheck(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
@@ -270,7 +272,7 @@ void expand(const Workflow& workflow, const Settings& settings, Diagnostics& dia
         return;
     }
     std::set<std::string> names;
-    bool is_reported = false;  // one pair is enough: a value repeated in a sweep makes many
+    bool is_reported = false;  // report only one pair: a value repeated in a sweep gives many
     visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
         if (!names.insert(variant.name).second && !std::exchange(is_reported, true))
             diagnostics.error(variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,

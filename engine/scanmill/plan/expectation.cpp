@@ -38,7 +38,7 @@ ParameterValue parse_end(Unit unit, const std::string& text) {
     return parse(written_as(unit), {{text}, false});
 }
 
-/// The number in the metric's own unit: scan units and their powers, radians, fractions, 0 or 1.
+/// The number in the unit of a metric: powers of the scan's unit, radians, fractions, or 0 and 1 for booleans.
 double number_of(const ParameterValue& value, Unit unit, const LengthScale& scale) {
     const ParameterScalar& scalar = std::get<ParameterScalar>(value);
     if (const auto* flag = std::get_if<bool>(&scalar)) return *flag ? 1 : 0;

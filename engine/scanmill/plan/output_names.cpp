@@ -24,7 +24,7 @@ OutputNames::Added OutputNames::add(const std::string& name, const OutputContent
                     folder->second);
     for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path())
         if (const auto other = files_.find(part); other != files_.end())
-            throw Error("{} would write '{}' into a folder that is a file of {}", writer, file.string(),
+            throw Error("{} would write '{}' into a folder that {} writes as a file", writer, file.string(),
                         other->second.writer);
     files_.emplace(file, Entry{content, writer});
     for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path()) folders_.emplace(part, writer);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The names of output files, checked against each other: no two cells write one file, and none writes into a folder
-/// that is a file of another. Reads no file.
+/// Checks the names of output files against each other: no two cells may write the same file, and the file of one cell
+/// may not be the folder of another cell's file. Reads no file.
 
 #include <filesystem>
 #include <map>
@@ -18,15 +18,15 @@ struct OutputContent {
 
 class OutputNames {
 public:
-    /// Messages and results contain the names below this folder.
+    /// `folder` is put before every name, in messages and results.
     explicit OutputNames(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     struct Added {
         std::filesystem::path file;
         bool is_new = false;  ///< false: the same content was added before
     };
-    /// `name`: relative to the folder, in normal form. `writer` names the cell in messages. Throws Error when another
-    /// content has the same name, and when one output's file is another's folder.
+    /// Adds an output. `name` is relative to the folder, in normal form. `writer` names the cell in messages. Throws
+    /// Error if an output with other content has the same name, and if the file of one output is the folder of another.
     Added add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
@@ -37,13 +37,14 @@ private:
 
     std::filesystem::path folder_;
     std::map<std::filesystem::path, Entry> files_;
-    std::map<std::filesystem::path, std::string> folders_;  // folders of files_ and the first writer of each
+    std::map<std::filesystem::path, std::string> folders_;  // maps each folder of files_ to its first writer
 };
 
 /// The JSON file beside an output that describes it: `<output>.json`.
 std::filesystem::path description_of(const std::filesystem::path& file);
 
-/// "scan 'a.ply' under variant 'default' of workflow 'w'": for messages. `workflow`: empty if there is only one.
+/// The name of a cell for messages: "scan 'a.ply' under variant 'default' of workflow 'w'". `workflow` is empty if
+/// there is only one workflow.
 std::string cell_text(const std::string& scan, const std::string& variant, const std::string& workflow);
 
 }  // namespace scanmill

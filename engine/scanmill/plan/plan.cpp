@@ -39,7 +39,7 @@ void check_template(const WorkflowOutput& output, Diagnostics& diagnostics) {
     const auto error = [&](std::string message) { diagnostics.error(output.position, std::move(message)); };
     check_placeholders(file, "the file name", placeholders, output.position, diagnostics);
     if (file.find('\0') != std::string::npos) error("a file's name has a zero byte");
-    constexpr std::size_t most = 255;  // of nearly every file system
+    constexpr std::size_t most = 255;  // the limit of nearly every file system
     const std::string shortest = with_placeholders(file, [](const std::string&) { return std::string(); });
     for (const std::filesystem::path& part : std::filesystem::path(shortest))
         if (const std::size_t bytes = part.native().size(); bytes > most)
@@ -82,7 +82,8 @@ private:
             if (unusable.contains(name)) return;
             if (!steps.emplace(name, step).second && steps[name] != step) {
                 steps.erase(name);
-                unusable[name] = fmt::format("'{}' is the name of several steps; give the one you mean an id", name);
+                unusable[name] =
+                    fmt::format("'{}' is the name of several steps; give one of them an `id` and use it here", name);
             }
         }
     };
@@ -150,7 +151,7 @@ private:
         return !reasons.has_errors();
     }
 
-    /// Outputs that follow an input get the kind of the value wired to it.
+    /// Sets the kind of every output that has PortSpec::like to the kind of the value wired to that input.
     FilterSpec with_kinds(FilterSpec spec, const std::vector<PlannedInput>& inputs) const {
         for (PortSpec& output : spec.outputs)
             if (const auto wired = std::ranges::find(inputs, output.like, &PlannedInput::port);
@@ -178,7 +179,7 @@ private:
         std::vector<PlannedExpectation>& expectations = plan_.steps[found->second].expectations;
         for (const Expectation& written : step.syntax->expect) {
             if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
-                continue;  // an earlier variant of the same step reported it
+                continue;  // already planned or reported for an earlier variant
             if (auto expectation = plan_expectation(written, spec, diagnostics_))
                 expectations.push_back(std::move(*expectation));
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The plan of one workflow: the graph of its steps over all variants, equal steps merged, every port wired, every
-/// parameter typed and in range. Planning finds every error that can be found before a scan is opened.
+/// The plan of one workflow: the graph of its steps over all variants. Equal steps are merged, every port is wired, and
+/// every parameter is typed and in range. Planning finds every error that can be found before a scan is opened.
 
 #include <optional>
 #include <string>
@@ -17,8 +17,8 @@ namespace scanmill {
 /// The origin of a value: an output of a planned step, or a workflow input.
 struct ValueSource {
     std::optional<std::size_t> step;  ///< index into Plan::steps
-    std::size_t input = 0;            ///< index into Workflow::inputs, when there is no step
-    std::string port;                 ///< of the step
+    std::size_t input = 0;  ///< index into Workflow::inputs, when there is no step
+    std::string port;  ///< output port of the step
     auto operator<=>(const ValueSource&) const = default;
 };
 
@@ -47,26 +47,26 @@ struct PlannedStep {
     std::string label;  ///< the id, else the filter's name
     Position position;
     FilterSpec spec;
-    ParameterSet parameters;  ///< as authored, defaults filled in; lengths unresolved
+    ParameterSet parameters;  ///< as authored, with defaults; lengths keep their written units
     std::vector<PlannedInput> inputs;
     std::vector<PlannedExpectation> expectations;
     /// Equal for steps with the same filter, parameters and upstream steps.
     std::string structure_key;
-    std::string file{};  ///< that `position` is in; empty: the workflow's
+    std::string file{};  ///< contains `position`; empty: the workflow file
 };
 
 struct PlannedOutput {
     std::string file;  ///< template
     Position position;
     ValueSource source;
-    std::string name;  ///< of the source, as the workflow refers to it
+    std::string name;  ///< name of the source, as written in the workflow
 };
 
 struct PlannedVariant {
     std::string name;
     std::vector<std::size_t> steps;  ///< indices into Plan::steps, each after its inputs
     std::vector<PlannedOutput> outputs;
-    /// The step of every name in this variant: ids, filters, aliases.
+    /// Maps each name to its step in this variant. Names are ids, filters and ids of one-of steps.
     std::map<std::string, std::size_t> steps_by_name;
 };
 
@@ -76,14 +76,15 @@ struct Plan {
     std::vector<PlannedVariant> variants;
 };
 
-/// Checks the workflow against the installed filters; with errors in `diagnostics` the plan must not be run. When the
-/// settings come from a file, `settings_diagnostics` belongs to that file: values that their parameter refuses are
-/// reported there, and relative paths among the values count from that file's folder. Otherwise they are reported at
-/// the step, and relative paths count from the working folder.
+/// Checks the workflow against the installed filters. If `diagnostics` has errors, the plan must not be run.
+///
+/// `settings_diagnostics` belongs to the file that contains the settings; nullptr for settings from the command line. A
+/// value that its parameter refuses is reported there, or else at the step. Relative paths in the settings count from
+/// the folder of that file, or else from the working folder.
 Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
                Diagnostics* settings_diagnostics = nullptr);
 
-/// The workflow's own name, else that of its file.
+/// The workflow's name, or the stem of its file if it has none.
 std::string workflow_name(const Plan& plan);
 
 Kind kind_of(const Plan& plan, const ValueSource& source);
@@ -94,10 +95,11 @@ struct TemplateValues {
     std::string scan, variant, workflow, folder;
 };
 
-/// The file's name relative to the output folder, in normal form. Throws Error when a value makes it leave the folder.
+/// Fills in the template `file`. Returns a path relative to the output folder, in normal form. Throws Error if the path
+/// leaves the folder.
 std::string expand_template(const std::string& file, const TemplateValues& values);
 
-/// "scan", "solid", "solid.tets": for messages and listings.
+/// The source's name for messages and listings: "scan", "solid", "solid.tets".
 std::string describe(const Plan& plan, const ValueSource& source);
 
 }  // namespace scanmill

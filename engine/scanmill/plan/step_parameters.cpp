@@ -63,7 +63,7 @@ private:
                                                 [](const ChosenArgument& given) { return given.parameter->name; });
         if (argument == step.arguments.end()) {
             const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
-                                   step.syntax->parameters.end();  // after an error
+                                   step.syntax->parameters.end();  // its value could not be read
             if (parameter.required && !attempted)
                 sources_.diagnostics.error(step.syntax->position, "{} needs the parameter '{}': {}",
                                            step.syntax->filter, parameter.name, expectation(parameter));
@@ -77,7 +77,7 @@ private:
         }
     }
 
-    /// Relative paths count from the folder of the file that they are written in.
+    /// Puts the folder of the file that contains a relative path before the path.
     ParameterValue with_folders(const ChosenArgument& argument, const ParameterSpec& parameter, ParameterValue value) {
         if (parameter.type != ParameterType::path) return value;
         const auto with_folder = [&](const ParameterScalar& path, std::size_t item) -> ParameterScalar {
@@ -113,7 +113,8 @@ private:
                                        parameter.name, source ? " (from $" + source->use->name + ")" : "", sentence);
     }
 
-    /// The first `$name` of a list whose value the parameter refuses, and the reason; nullptr for other errors.
+    /// The first `$name` of a list whose value the parameter refuses; `sentence` gets the reason. nullptr for other
+    /// errors.
     static const ReplacedName* refused_item(const ChosenArgument& argument, const ParameterSpec& parameter,
                                             std::string& sentence) {
         if (!parameter.list) return nullptr;

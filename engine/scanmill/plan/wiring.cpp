@@ -18,7 +18,7 @@ std::vector<std::string> names_of(const Items& items) {
     return names;
 }
 
-/// "; filters that make mesh: alpha-solid and sculpt", or nothing.
+/// "; filters that make mesh: alpha-solid and sculpt", or empty if no filter does.
 std::string makers(const FilterLibrary& library, Kind kind) {
     std::vector<std::string> names;
     for (const std::string& name : library.names())
@@ -98,14 +98,15 @@ private:
     std::vector<ValueSource> nearest(const PortSpec& port) {
         if (!port.also.empty()) {
             if (!port.optional)
-                diagnostics_.error(step_.position, "{} takes {} at its port '{}'; expected `in: {{{}: …}}`", spec_.name,
-                                   kinds_text(port), port.name, port.name);
+                diagnostics_.error(step_.position,
+                                   "the port '{}' of {} takes {} and must be named in `in`; expected `in: {{{}: …}}`",
+                                   port.name, spec_.name, kinds_text(port), port.name);
             return {};
         }
         std::size_t rivals = 0;
         for (const PortSpec& other : spec_.inputs) {
             if (other.kind != port.kind || other.name == port.name || !other.also.empty()) continue;
-            // An optional port would get the same value as the port before it; only `in` can ask for that.
+            // An optional port would take the same value as an earlier port of its kind, so only `in` can wire it.
             if (port.optional && &other < &port) return {};
             rivals += other.optional ? 0 : 1;
         }

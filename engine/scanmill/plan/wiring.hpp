@@ -2,9 +2,9 @@
 #pragma once
 /// Decides which value feeds which port within one variant.
 ///
-/// `in` takes precedence. Without it, a port takes the nearest earlier value of its kind, or the workflow input of that
-/// kind; two equally near values are an error that asks for `in`. An optional port that shares its kind with an earlier
-/// port is wired by `in` alone.
+/// `in` takes precedence. A port that `in` does not name takes the nearest earlier value of its kind, or else the
+/// workflow input of that kind. Two equally near values are an error, whose message asks for `in`. An optional port
+/// that shares its kind with an earlier port is wired only by `in`.
 
 #include "scanmill/plan/plan.hpp"
 
@@ -16,16 +16,17 @@ struct WiringScope {
     const FilterLibrary& library;
     const std::vector<std::size_t>& earlier;  ///< indices into plan.steps
     const std::map<std::string, std::size_t>& steps_by_name;
-    /// Names of several steps, and of steps that could not be planned; each with its error, empty if already reported.
+    /// Names that cannot be used: of several steps, or of a step that could not be planned. Each has the error to
+    /// report; empty if it was reported already.
     const std::map<std::string, std::string>& unusable_names;
-    /// An earlier step could not be planned and may be the source of a missing value, which is then not reported.
+    /// An earlier step could not be planned. It may be the source of a missing value, so none is reported as missing.
     bool uncertain;
 };
 
-/// The source that `reference` names; nothing after an error.
+/// The source that `reference` names. Reports a wrong reference and returns nothing.
 std::optional<ValueSource> resolve(const Reference& reference, const WiringScope& scope, Diagnostics& diagnostics);
 
-/// All ports of the step, without those that could not be wired, which are reported.
+/// Wires the ports of the step. Reports ports that could not be wired and leaves them out.
 std::vector<PlannedInput> wire(const StepSyntax& step, const FilterSpec& spec, const WiringScope& scope,
                                Diagnostics& diagnostics);
 

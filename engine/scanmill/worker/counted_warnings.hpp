@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Warnings of one job, equal sentences once.
+/// Collects the warnings of one job. Equal sentences are kept once, with their number.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace scanmill {
 
 class CountedWarnings {
 public:
-    /// Whether the sentence is new. Cost: O(different sentences).
+    /// Adds a sentence. Returns whether it is new. Cost: O(number of different sentences).
     bool add(const std::string& sentence) {
         const auto found = std::ranges::find(warnings_, sentence, &Warning::sentence);
         if (found != warnings_.end()) {

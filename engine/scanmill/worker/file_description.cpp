@@ -15,7 +15,7 @@
 
 namespace scanmill {
 
-// Nettle is as fast as OpenSSL here, and loads in a tenth of the time, which every process would pay.
+// Nettle is as fast as OpenSSL here. It loads in a tenth of the time, and every process has to load it.
 
 Sha256::Sha256() : context_(std::make_unique<sha256_ctx>()) { ::sha256_init(context_.get()); }
 
@@ -61,7 +61,7 @@ Json to_json(const ParameterSet& parameters) {
 
 std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
-/// The node and everything that it was made from, in an order in which it can be made.
+/// The node and all nodes upstream of it. Every node comes after its inputs.
 std::set<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
     std::set<std::size_t> found{node};
     std::vector<std::size_t> open{node};
@@ -103,7 +103,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
             entry["parameters"] = to_json(reports[each].resolved);
             entry["metrics"] = to_json(reports[each].metrics);
         } else {
-            // A scan that equals another one is read once, under the other's name.
+            // Scans of equal content share one node, whose leaf names only the first scan.
             const bool is_this_scan = made.is_scan && !graph.plans[cell.plan]->workflow.inputs.front().list;
             entry["file"] = is_this_scan ? graph.scan_names[cell.scan] : made.leaf.file.string();
             entry["content"] = made.leaf.content;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The SHA-256 of bytes that come piece by piece; the hash that users can check with sha256sum.
+/// Writes the JSON file that describes an output, and computes the output's SHA-256 hash.
 
 #include <filesystem>
 #include <memory>
@@ -14,34 +14,36 @@ struct sha256_ctx;
 
 namespace scanmill {
 
+/// Computes the SHA-256 hash of bytes that arrive in parts. Users can check it with sha256sum.
 class Sha256 {
 public:
     Sha256();
     ~Sha256();
 
     void add(std::string_view bytes);
-    /// 64 hexadecimal digits. Once, after everything was added.
+    /// The hash as 64 hexadecimal digits. Pre: called once, after the last add().
     std::string text();
 
 private:
     std::unique_ptr<sha256_ctx> context_;
 };
 
-// The small JSON file beside every output, `<output>.json`: what the file is, how it was made, and what is known to be
-// true of it. Equal outputs have equal descriptions, whenever and wherever they were made.
+// The description of an output is the small JSON file `<output>.json` beside it. It contains the properties of the file
+// and how it was made. Equal outputs have equal descriptions, whenever and wherever they were made.
 
-/// Describes as JSON how an output was made: workflow and variants, scan, seed, the program's version, expectations of
-/// the step that made it, and for each step from the scan to it: filter, version, build, key, parameters, metrics and
-/// doubts. `cells`: all that share the file.
+/// Describes as JSON how an output was made. The text contains the workflow, its variants, the scan, the seed, the
+/// program's version, the doubts, and the expectations of the step that made the output. For each step from the scan to
+/// the output, it contains filter, version, build, key, parameters and metrics. `cells` are all cells that share the
+/// file.
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports);
 
-/// Names of the columns that the filters between the files that were read and the node's outputs declare to add.
+/// The names of all columns that the node's filter, or a filter upstream, declares to add.
 std::vector<std::string> added_columns(const RunGraph& graph, std::size_t node);
 
-/// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and `sha256`
-/// (of what was written, see Sha256), the value's unit, frame and properties, and `shift` unless it is zero (see
-/// WriteOptions::on_shift). Throws Error as AtomicFile.
+/// Writes the description of a file that was written. It consists of `how`, the result of made_how(), and of the name,
+/// size and `sha256` of the file. It also contains unit, frame and properties of the value, and `shift` unless it is
+/// zero (see WriteOptions::on_shift). Throws Error as AtomicFile does.
 void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
                        const Value& value, const Metrics& properties, const Vec3& shift);
 

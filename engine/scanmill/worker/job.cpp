@@ -56,13 +56,13 @@ struct JsonForm<Error> {
     }
 };
 
-/// A planned step without its declaration, which job_from() takes from the library.
+/// A planned step in a message, without the filter's declaration. job_from() adds the declaration from the library.
 struct StepMessage {
     std::string filter;
     int version = 0;
     std::string label;
     ParameterSet parameters;
-    std::vector<Kind> kinds;  ///< of the outputs
+    std::vector<Kind> kinds;  ///< kinds of the outputs
     std::vector<PlannedExpectation> expectations;
 };
 constexpr auto fields(const StepMessage*) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Jobs for workers, their reports, and both as messages between the runner and a worker process.
+/// Jobs for workers and reports from workers. Both are also messages between the runner and a worker process.
 ///
-/// A job contains everything that a worker needs; workers have neither the plan nor the graph. Messages are CBOR;
-/// numbers keep their bits and file names need not be UTF-8.
+/// A job contains everything that a worker needs, because workers have neither the plan nor the graph. Messages are in
+/// CBOR. Numbers keep their bits, and file names need not be UTF-8.
 
 #include <memory>
 #include <optional>
@@ -19,12 +19,12 @@
 
 namespace scanmill {
 
-/// A value that a job needs: in RunValues, in the cache, or in the file to read.
+/// A value that a job needs. It is in RunValues, in the cache, or in the file to read.
 struct JobInput {
-    std::string port;                ///< of the step that takes it
-    std::size_t node = 0;            ///< the node that the value belongs to
+    std::string port;                ///< input port of the step that takes the value
+    std::size_t node = 0;            ///< index of the node that made the value
     std::string from;                ///< the node's output port; empty for leaves
-    std::string content;             ///< its name in the cache; empty: not cached
+    std::string content;             ///< name of the value in the cache; empty: not cached
     std::optional<LeafSource> leaf;  ///< the file, if the node is a leaf
 };
 constexpr auto fields(const JobInput*) {
@@ -37,7 +37,7 @@ struct JobCaching {
     bool is_used = false;  ///< false: the cache is neither read nor written
     std::string plan_key;
     std::string code;
-    double inputs_cost = 0;  ///< seconds to compute those inputs again that the cache does not have
+    double inputs_cost = 0;  ///< seconds to compute again the inputs that the cache does not have
     std::vector<std::string> needed;  ///< output ports that other tasks need
 };
 constexpr auto fields(const JobCaching*) {
@@ -57,7 +57,7 @@ constexpr auto fields(const ReadWork*) {
 
 struct StepWork {
     std::shared_ptr<const PlannedStep> step;
-    std::string build;  ///< of the module
+    std::string build;  ///< build of the filter's module
     std::vector<JobInput> inputs;
     std::vector<ParameterFile> parameter_files;
     JobCaching caching;
@@ -68,7 +68,7 @@ constexpr auto fields(const StepWork*) {
                       field("parameter-files", &R::parameter_files), field("caching", &R::caching)};
 }
 
-/// Only checks whether a cached result meets the step's expectations.
+/// A check whether a cached result meets the step's expectations. The filter does not run.
 struct ExpectWork {
     std::shared_ptr<const PlannedStep> step;
     Metrics metrics;
@@ -81,9 +81,9 @@ constexpr auto fields(const ExpectWork*) {
 
 struct WriteWork {
     std::filesystem::path file;
-    std::string made_how;  ///< for the file's description
-    std::vector<std::string> added_columns;  ///< those of added_columns()
-    bool must_be_closed = false;             ///< the step's expectation `closed: true` holds for the file too
+    std::string made_how;  ///< text for the file's description; see made_how()
+    std::vector<std::string> added_columns;  ///< result of added_columns()
+    bool must_be_closed = false;  ///< the step expects `closed: true`, so the mesh in the file must be closed too
     JobInput value;
     Metrics properties{};  ///< the value's properties; empty: not computed yet
 };
@@ -98,15 +98,15 @@ constexpr auto fields(const WriteWork*) {
 }
 
 struct Job {
-    std::size_t node = 0;  ///< whose values it computes, checks or writes
+    std::size_t node = 0;  ///< index of the node whose values the job computes, checks or writes
     std::variant<ReadWork, StepWork, ExpectWork, WriteWork> work;
-    std::string frame;  ///< added to its errors; empty: none
-    std::string scan;
+    std::string frame;  ///< frame to add to errors of the job; empty: none
+    std::string scan;  ///< name of the scan, for errors
     unsigned threads = 1;
     std::uint64_t seed = 0;
-    u64 memory_limit = 0;      ///< bytes; 0: none
-    double seconds_limit = 0;  ///< 0: none
-    std::string limit_text;    ///< the setting behind seconds_limit, as a part of a sentence
+    u64 memory_limit = 0;  ///< in bytes; 0: no limit
+    double seconds_limit = 0;  ///< 0: no limit
+    std::string limit_text;  ///< names the setting that gave seconds_limit, for the end of a sentence
 };
 constexpr auto fields(const Job*) {
     using R = Job;
@@ -123,13 +123,13 @@ constexpr auto fields(const Job*) {
 
 struct JobReport {
     Outcome outcome = Outcome::skipped;  ///< skipped: cancelled, or an input was lost
-    std::vector<ValueSlot> lost;         ///< inputs that were removed from the cache
-    NodeReport node;                     ///< its failure and effort are also those of a write
-    StepResult result;                   ///< as stored in the cache; empty without a cache
-    std::vector<std::string> kept;       ///< ports whose values the cache has
-    OutputReport output;
-    bool was_read_whole = false;  ///< a scan that was planned as a stream
-    std::string wear;  ///< why the process should be replaced; empty: it need not be
+    std::vector<ValueSlot> lost;  ///< inputs that were removed from the cache
+    NodeReport node;  ///< for WriteWork, holds the failure and effort of the write
+    StepResult result;  ///< as stored in the cache; empty without a cache
+    std::vector<std::string> kept;  ///< output ports whose values the cache has
+    OutputReport output;  ///< only for WriteWork
+    bool was_read_whole = false;  ///< the scan was planned as a stream but had to be loaded whole
+    std::string wear;  ///< why the worker process should be replaced; empty: no reason
 };
 constexpr auto fields(const JobReport*) {
     using R = JobReport;
@@ -143,23 +143,24 @@ constexpr auto fields(const JobReport*) {
                       field("wear", &R::wear)};
 }
 
-/// Hash of all that decides the result: filter, parameters, content of the inputs. With resolved parameters it is the
-/// run key; with authored ones, equal keys mean equal run keys.
+/// A hash of everything that decides the result of a step: filter, parameters and content of the inputs. With resolved
+/// parameters, the hash is the run key. With authored parameters, equal hashes mean equal run keys.
 std::string work_key(const PlannedStep& step, const std::string& code, const ParameterSet& parameters,
                      const std::vector<JobInput>& inputs);
 
-/// The error with the job's frame and scan. Adds the file that was being read unless a reader threw the error.
+/// The failure of a job: `error` with the job's frame and scan. Adds the name of the file that was being read, unless
+/// the reader threw the error and named the file.
 Failure failure_of(const Job& job, Cause cause, Error error, int number = 0);
 
-// Messages. Functions that read one throw Error for bytes that are not such a message.
+// Messages. A function that reads a message throws Error for bytes that are not a message of its type.
 
 /// The first message to a worker.
 struct WorkerStart {
-    std::string cache_folder;  ///< empty: none
-    int keep_policy = 0;
-    int parent = 0;  ///< process ID; the worker ends with it
-    std::string core_build;
-    std::string values;   ///< the folder of RunValues
+    std::string cache_folder;  ///< empty: no cache
+    int keep_policy = 0;  ///< KeepRule::Policy
+    int parent = 0;  ///< process ID of the runner; the worker ends when the runner ends
+    std::string core_build;  ///< hash of the runner's core library
+    std::string values;  ///< the folder of RunValues
     std::string scratch;  ///< a folder that only this worker uses
 };
 constexpr auto fields(const WorkerStart*) {
@@ -171,18 +172,18 @@ constexpr auto fields(const WorkerStart*) {
 std::string to_message(const WorkerStart& start);
 WorkerStart start_from(std::string_view message);
 
-/// All further messages to a worker.
+// All further messages to a worker are jobs.
 std::string to_message(const Job& job);
-/// The message contains filters by name; `library` has their declarations.
+/// Reads a job. A message names the filter of a step; its declaration comes from `library`.
 Job job_from(std::string_view message, const FilterLibrary& library);
 
-/// A message from a worker; one of these.
+/// A message from a worker. Exactly one member is set.
 struct WorkerMessage {
-    bool is_ready = false;  ///< once, when the process has started
-    std::optional<std::string> loading = {};  ///< the module that is being loaded; empty: it is loaded
+    bool is_ready = false;  ///< sent once, when the process has started
+    std::optional<std::string> loading = {};  ///< file of the module that is being loaded; empty text: loading is over
     std::optional<double> progress = {};
     std::optional<std::string> warning = {};  ///< warning about the job
-    std::optional<std::string> note = {};     ///< note by the worker's cache
+    std::optional<std::string> note = {};  ///< warning of the worker's cache
     std::optional<JobReport> report = {};
 };
 constexpr auto fields(const WorkerMessage*) {
@@ -193,7 +194,7 @@ constexpr auto fields(const WorkerMessage*) {
 std::string to_message(const WorkerMessage& message);
 WorkerMessage worker_message_from(std::string_view message);
 
-/// Sends a message over a socket: four bytes of length, then the bytes. False when the other process has ended.
+/// Sends a message over a socket: four bytes of length, then the bytes. Returns false if the other process has ended.
 bool send_message(int socket, std::string_view message);
 
 /// Splits the bytes that arrive on a socket into messages.
@@ -202,9 +203,10 @@ public:
     explicit MessageReader(int socket) : socket_(socket) {}
 
     enum class Arrival { something, nothing, end };
-    /// Reads what has arrived; with `waits`, blocks until something arrives. `end`: the other side closed the socket.
+    /// Reads the bytes that have arrived. With `waits`, blocks until bytes arrive. Returns `end` if the other side
+    /// closed the socket.
     Arrival receive(bool waits);
-    /// The next complete message. Throws Error for an impossible length.
+    /// The next complete message; empty if none has arrived. Throws Error for an impossible length.
     std::optional<std::string> next();
 
 private:

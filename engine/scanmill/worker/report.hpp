@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The outcome of a run: of every node, every cell and every output file.
+/// Reports of a run about every node, every cell and every output file.
 
 #include <array>
 #include <filesystem>
@@ -44,7 +44,7 @@ enum class Cause {
     signal,       ///< a signal ended the worker process
     exit,         ///< the worker process exited
     output,       ///< a file could not be written
-    fault         ///< the program's own: a filter broke its declaration
+    fault         ///< an error of the program: a filter broke its declaration
 };
 constexpr std::array<std::string_view, 10> names_of(const Cause*) {
     return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output", "fault"};
@@ -52,10 +52,10 @@ constexpr std::array<std::string_view, 10> names_of(const Cause*) {
 
 struct Failure {
     Cause cause = Cause::none;
-    int number = 0;  ///< the signal, or the exit code
+    int number = 0;  ///< number of the signal, or the exit code
     Error error{std::string()};  ///< with frames up to the step
-    std::string scan;  ///< the scan of the cell; empty: the error's sentence names it
-    std::string equal_scan;  ///< another scan with the same content, which the step ran on; empty: the scan itself
+    std::string scan;  ///< name of the cell's scan; empty: the error's sentence names it
+    std::string equal_scan;  ///< another scan of equal content, on which the step ran; empty: it ran on `scan`
 
     explicit operator bool() const { return cause != Cause::none; }
     /// The error with a frame for the scan.
@@ -67,7 +67,7 @@ constexpr auto fields(const Failure*) {
                       field("scan", &R::scan), field("equal-scan", &R::equal_scan)};
 }
 
-/// Resources that a job used, and what its process wrote.
+/// Resources that a job used, and the log of its process.
 struct Effort {
     double seconds = 0, cpu_seconds = 0;
     u64 peak_memory = 0;
@@ -87,13 +87,13 @@ constexpr auto fields(const Effort*) {
 struct NodeReport {
     Outcome outcome = Outcome::skipped;
     Origin origin = Origin::ran;
-    std::string why;  ///< why it ran and was not taken from the cache
+    std::string why;  ///< why the node ran instead of being taken from the cache
     Failure failure;
     Effort effort;
     unsigned attempts = 0;
-    ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
+    ParameterSet resolved;  ///< parameters as the filter got them: lengths in the scan's unit
     Metrics metrics;        ///< the filter's metrics, in declared order
-    Metrics properties;     ///< of the primary output or of the file read; empty unless requested
+    Metrics properties;     ///< properties of the primary output or the file read; empty unless requested
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
 };
@@ -112,11 +112,11 @@ struct OutputReport {
     Kind kind = kind_of<PointCloud>();
     Metrics properties;
     std::vector<std::string> warnings;
-    std::vector<std::string> doubts;  ///< about the file: it holds less than the value
-    std::string sha256;               ///< of the file's bytes; empty: not written
-    u64 bytes = 0;                    ///< of the file
-    std::filesystem::path moved_to;   ///< where the file of an earlier run was moved; empty: nowhere
-    std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: it need not be
+    std::vector<std::string> doubts;  ///< doubts about the file because it holds less than the value
+    std::string sha256;               ///< hash of the file's bytes; empty: not written
+    u64 bytes = 0;                    ///< size of the file
+    std::filesystem::path moved_to;   ///< new path of the file of an earlier run; empty: not moved
+    std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: no such error
 };
 constexpr auto fields(const OutputReport*) {
     using R = OutputReport;
@@ -128,11 +128,11 @@ constexpr auto fields(const OutputReport*) {
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
-    Failure failure;     ///< of the first failed node, else of the first failed output
-    std::optional<std::size_t> failed_node;  ///< whose failure it is, by index into RunGraph::nodes
-    double seconds = 0;  ///< sum over its nodes and outputs; nodes that cells share count for each
+    Failure failure;     ///< failure of the first failed node, or else of the first failed output
+    std::optional<std::size_t> failed_node;  ///< index into RunGraph::nodes of the node with this failure
+    double seconds = 0;  ///< sum over the cell's nodes and outputs; shared nodes count in every cell
     std::vector<OutputReport> outputs;
-    std::vector<std::string> doubts;  ///< from doubts_about(), and of its outputs
+    std::vector<std::string> doubts;  ///< from doubts_about() and from OutputReport::doubts
 };
 
 struct RunReport {
@@ -140,9 +140,9 @@ struct RunReport {
     std::vector<CellReport> cells;  ///< by index into RunGraph::cells
     bool interrupted = false;
 
-    /// That of its worst cell; skipped cells count as failed; ok without cells.
+    /// The outcome of the worst cell. Skipped cells count as failed. A run without cells is ok.
     Outcome outcome() const;
-    /// Whether a cell failed for a fault of the program.
+    /// Whether an error of the program (Cause::fault) made a cell fail.
     bool has_fault() const;
 };
 

@@ -52,7 +52,7 @@ MemoryLimit::~MemoryLimit() {
 
 namespace {
 
-/// CPU time of this process, of all threads.
+/// CPU time of all threads of this process, in seconds.
 double cpu_seconds() {
     rusage used{};
     ::getrusage(RUSAGE_SELF, &used);
@@ -62,7 +62,7 @@ double cpu_seconds() {
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-/// Makes the kernel restart the peak of resident memory.
+/// Makes the kernel measure the peak of resident memory from now on.
 void reset_peak() {
     const int file = ::open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     if (file < 0) return;
@@ -106,7 +106,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* prefix = "scanmill-scratch-";
 
-/// A descriptor of the folder with its lock; -1 if another process has the lock, or the folder cannot be opened.
+/// Opens and locks the folder. Returns its descriptor, or -1 if another process has the lock or it cannot be opened.
 int locked(const fs::path& folder) {
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
     if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
@@ -120,7 +120,7 @@ void remove_abandoned(const fs::path& parent) {
         const fs::path& folder = entry->path();
         if (!folder.filename().string().starts_with(prefix)) continue;
         std::error_code ignored;
-        // A new folder is not locked yet.
+        // Another process may have created the folder and not locked it yet.
         constexpr std::chrono::minutes settled(1);
         const auto written = fs::last_write_time(folder, ignored);
         if (ignored || fs::file_time_type::clock::now() - written < settled) continue;
@@ -160,7 +160,7 @@ fs::path ScratchFolder::folder(const std::string& name) const {
     fs::create_directory(folder, trouble);
     if (trouble)
         throw Error("no scratch folder could be made in '{}': {}", path_.string(), trouble.message())
-            .hint("set TMPDIR to a folder with room");
+            .hint("set TMPDIR to a folder with more free space");
     return folder;
 }
 

@@ -12,8 +12,9 @@
 
 namespace scanmill {
 
-/// Limits the memory of this process as long as the object lives: allocations beyond it fail. Mapped files do not
-/// count; the stacks of `threads` are added. 0: no limit. Does nothing under AddressSanitizer, which needs much more.
+/// Limits the memory of this process while the object exists: allocations beyond `bytes` fail. Mapped files do not
+/// count. The stacks of `threads` are added to the limit. With 0 bytes there is no limit. Does nothing under
+/// AddressSanitizer and ThreadSanitizer, which need much more memory.
 class MemoryLimit {
 public:
     MemoryLimit(u64 bytes, unsigned threads);
@@ -26,8 +27,8 @@ private:
     u64 before_ = 0;
 };
 
-/// Measures the time and memory of this process from its construction on. Only one object can measure the peak at a
-/// time.
+/// Measures the time and memory that this process uses after the construction of the object. Only one object at a time
+/// can measure the peak of memory.
 class ResourceUse {
 public:
     ResourceUse();
@@ -38,30 +39,30 @@ private:
     double cpu_seconds_;
 };
 
-/// Resident bytes of a process. Zeros when it has ended.
+/// The resident memory of a process in bytes; zeros if the process has ended.
 struct ResidentMemory {
     u64 now = 0;
-    u64 peak = 0;  ///< since the process, or its last ResourceUse, began
+    u64 peak = 0;       ///< largest since the process started or constructed its last ResourceUse
     u64 anonymous = 0;  ///< now, without mapped files
 };
 ResidentMemory resident_memory(int process);
 
-/// A folder for temporary files in the system's temporary folder, removed at the end with its content. The constructor
-/// removes folders that killed processes left behind.
+/// A folder for temporary files in the system's temporary folder. The destructor removes it with its content. The
+/// constructor removes folders that killed processes left behind.
 class ScratchFolder {
 public:
-    /// Throws Error if it cannot be made.
+    /// Throws Error if the folder cannot be created.
     ScratchFolder();
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
-    /// An empty folder in it.
+    /// Creates an empty folder within it. An earlier folder of the same name is removed.
     std::filesystem::path folder(const std::string& name) const;
 
 private:
     std::filesystem::path path_;
-    int lock_ = -1;  // held while the folder is in use
+    int lock_ = -1;  // descriptor whose lock is held while the folder is in use
 };
 
 }  // namespace scanmill

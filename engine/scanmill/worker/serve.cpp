@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The worker process: receives jobs, does them on a Workbench, and sends the reports.
+// The worker process receives jobs, does them with a Workbench, and sends the reports.
 #include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -48,7 +48,7 @@ private:
 
 void prepare_process(const WorkerStart& start) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != start.parent) ::_exit(1);  // it ended before the call above
+    if (::getppid() != start.parent) ::_exit(1);  // the runner ended before the call above
     std::signal(SIGTERM, [](int) { cancel_requested = 1; });
     std::signal(SIGINT, SIG_IGN);
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
@@ -64,7 +64,8 @@ std::size_t open_files() {
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
-/// Describes memory and open files that a process gained since its start, as a part of a sentence; empty if few.
+/// Describes open files or memory that the process gained since its start, for the end of a sentence. Empty if it has
+/// no more files and at most 256 MiB more memory.
 std::string leak(u64 memory_at_start, std::size_t files_at_start) {
     if (const std::size_t files = open_files(); files > files_at_start)
         return count_text(files - files_at_start, "more file is open", "more files are open");

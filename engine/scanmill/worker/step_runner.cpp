@@ -18,13 +18,13 @@ namespace scanmill {
 namespace {
 
 struct ResolvedParameters {
-    /// Defaults that cannot be resolved or are not used stay as they are declared, spacings that the filter takes as
-    /// they are written.
+    /// Three kinds of values stay unresolved: defaults that cannot be resolved, defaults that
+    /// ParameterSpec::unless_given makes unused, and spacings if ParameterSpec::takes_spacings is set.
     ParameterSet values;
-    std::vector<UnresolvedLength> unresolved;  ///< the reasons
+    std::vector<UnresolvedLength> unresolved;  ///< reasons why defaults cannot be resolved
 };
 
-/// Throws UnresolvedLength for a length that is not its parameter's default.
+/// Throws UnresolvedLength for a length that cannot be resolved and is not its parameter's default.
 ResolvedParameters resolved_parameters(const PlannedStep& step, const LengthScale& scale) {
     ResolvedParameters result;
     for (const auto& [name, value] : step.parameters.values) {
@@ -53,8 +53,8 @@ const Value* first_geometric(const std::vector<StepInput>& inputs) {
     return found == inputs.end() ? nullptr : &found->value;
 }
 
-/// What relative lengths refer to: the first geometric input with positions, since features may have none; without
-/// one, the first geometric input. Null without any.
+/// The input that relative lengths refer to: the first geometric input that has positions, or else the first geometric
+/// input. nullptr without geometric inputs. Features, for example, may have no positions.
 const Value* measured_input(const std::vector<StepInput>& inputs) {
     const auto found = std::ranges::find_if(inputs, [](const StepInput& input) {
         return is_geometric(input.value.kind()) && !positions_of(input.value).empty();
@@ -62,7 +62,7 @@ const Value* measured_input(const std::vector<StepInput>& inputs) {
     return found == inputs.end() ? first_geometric(inputs) : &found->value;
 }
 
-/// The unit of all inputs that declare one. Throws Error when two differ.
+/// The unit of all inputs that declare a unit; unknown if none does. Throws Error if two units differ.
 LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     const StepInput* first = nullptr;
     for (const StepInput& input : inputs) {
@@ -78,8 +78,8 @@ LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     return first ? frame_of(first->value)->unit : LengthUnit::unknown;
 }
 
-/// The inputs of a measuring step with the truth in the unit of the value, so that equal lengths are equal numbers.
-/// Throws Error if only one of the two declares a unit: a wrong guess would be a wrong score.
+/// The inputs of a measuring step, with the truth converted to the unit of the value. Throws Error if only one of the
+/// two declares a unit, because a wrong guess would give a wrong score.
 std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const MeasureSpec& ports) {
     const auto unit_at = [&](const std::string& port) -> std::optional<LengthUnit> {
         const auto input = std::ranges::find(inputs, port, &StepInput::port);
@@ -104,10 +104,11 @@ std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const Mea
     return inputs;
 }
 
-/// All inputs in `unit`, which is that of all that declare one, and relative to one origin, that of the first.
+/// All inputs in `unit`, relative to the origin of `first`. Inputs without a unit get `unit`, with a warning. Pre:
+/// `unit` is the unit of all inputs that declare a unit.
 Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, LengthUnit unit, Context& context) {
     Inputs result;
-    std::map<std::string, std::size_t> without_unit;  // by port
+    std::map<std::string, std::size_t> without_unit;  // number of values by port
     for (const StepInput& input : inputs) {
         const std::optional<Frame> own = frame_of(input.value);
         if (!own) {
@@ -145,7 +146,7 @@ void require_declared(const Outputs& outputs, const Metrics& metrics, const Filt
     }
 }
 
-/// Puts the file's path before errors of `check`, as readers do.
+/// Calls `check`. Puts the file's path before the sentence of an error, as readers do.
 void naming_file(const std::filesystem::path& file, const std::function<void()>& check) {
     try {
         check();
@@ -162,7 +163,7 @@ ReadOptions reading(const LeafSource& leaf, const OnWarning& on_warning) {
     return options;
 }
 
-/// Gives the frame its declared name. False if it has that name or none is declared.
+/// Sets `name` to the declared frame name. Returns false if `name` is equal already or no name is declared.
 bool take_declared_name(const LeafSource& leaf, std::string& name, const OnWarning& on_warning) {
     if (leaf.frame.empty() || name == leaf.frame) return false;
     if (!name.empty())
@@ -178,7 +179,7 @@ OnWarning adding_to(std::vector<std::string>& warnings) {
 /// A step whose inputs and parameters are prepared.
 struct Prepared {
     ResolvedParameters resolved;
-    std::vector<std::string> warnings;  ///< of resolving them
+    std::vector<std::string> warnings;  ///< warnings about resolving the parameters
     std::function<Outputs(const FilterDeclaration&, const ParameterSet&)> run;
 };
 
@@ -270,7 +271,7 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
         const Value* first = first_geometric(comparable);
         const LengthUnit unit = common_unit(comparable);
         Inputs ports = rebased(comparable, first, unit, context);
-        // Without a geometric input, the filter resolves lengths against its own result.
+        // Without a geometric input, the filter itself resolves lengths, by the size of its result.
         std::vector<std::string> warnings;
         ResolvedParameters resolved{step.parameters, {}};
         if (const Value* measured = measured_input(comparable)) {

@@ -29,7 +29,7 @@ UnchangedWhileRead::UnchangedWhileRead(std::filesystem::path file, std::string c
     : file_(std::move(file)),
       content_(std::move(content)),
       before_() {
-    constexpr std::time_t settled = 2;  // seconds; the coarsest time stamps of file systems
+    constexpr std::time_t settled = 2;  // seconds; the coarsest resolution of times in file systems
     is_settled_ = ::stat(file_.c_str(), &before_) == 0 && before_.st_ctim.tv_sec < std::time(nullptr) - settled;
     if (is_settled_ && beside)
         beside_ = std::async(std::launch::async | std::launch::deferred, scanmill::require_unchanged, file_, content_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Checks that files did not change since the run was planned: keys contain the content hash of that time, so results
-/// of changed content must not be stored under them.
+/// Checks that files did not change since the run was planned. Keys contain the content hash taken at planning time, so
+/// results from changed content must not be stored under them.
 
 #include <sys/stat.h>
 #include <filesystem>
@@ -10,17 +10,18 @@
 
 namespace scanmill {
 
-/// Throws Error if the file's content_hash() differs.
+/// Throws Error if the file's content_hash() is not `content`.
 void require_unchanged(const std::filesystem::path& file, const std::string& content);
 
 /// The same check for a file that is about to be read.
 class UnchangedWhileRead {
 public:
-    /// `beside`: hashes on another thread while the file is read; else require() hashes.
+    /// To be called before the file is read. If `beside` is true, another thread hashes the file while it is read;
+    /// otherwise require() hashes it.
     UnchangedWhileRead(std::filesystem::path file, std::string content, bool beside);
 
-    /// Call it after every reading. Throws Error as require_unchanged(). Hashes again if the file's times show a change
-    /// since the constructor, or are too recent to show one.
+    /// To be called after every reading. Throws Error as require_unchanged() does. Hashes the file again if its times
+    /// show a change since the constructor, or are too recent to show a change.
     void require();
 
 private:

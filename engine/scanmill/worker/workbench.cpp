@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Thrown when an input is nowhere; the report contains it.
+/// Thrown if an input is neither stored nor readable from a file. JobReport::lost contains the input.
 struct InputLost {};
 
-/// Thrown when a job fails for another cause than a refusal.
+/// Thrown if a job fails for a cause other than Cause::refused.
 struct JobFailure {
     Cause cause;
     Error error;
@@ -102,7 +102,7 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
         fail(Cause::exception, Error("an unexpected error: something other than a std::exception was thrown"));
     }
     std::error_code gone;
-    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // the base of relative paths
+    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // relative paths count from folder_
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
@@ -159,7 +159,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
             throw;
         } catch (...) {
             report_warnings();
-            if (scan && scan_->check) scan_->check->require();  // a change explains the failure
+            if (scan && scan_->check) scan_->check->require();  // if the file changed, report that instead
             throw;
         }
     }();
@@ -223,7 +223,7 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
 
 namespace {
 
-/// Used when files are read again: their warnings were already reported.
+/// Used when a file is read again, because its warnings were reported the first time.
 void ignore_warning(std::string) {}
 
 void add_stray_points(const RobustBox& box, Metrics& properties) {
@@ -264,8 +264,8 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
           seconds_since(start), report);
 }
 
-/// Opens the scan as a stream, and stores in the cache the result that reading its value would give. False if the file
-/// must be read as a whole.
+/// Opens the scan as a stream. Stores in the cache the same result that loading the scan whole would give. Returns
+/// false if the file must be loaded whole.
 bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
                                CountedWarnings& warnings, const std::function<void()>& report_warnings,
                                JobReport& report) {
@@ -318,7 +318,7 @@ std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, u
     const JobInput& input = work.inputs.front();
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
     if (scan_ && scan_->node == input.node) return scan_->stream;
-    if (values_.contains({input.node, input.from})) return nullptr;  // its file was read as a whole
+    if (values_.contains({input.node, input.from})) return nullptr;  // the file was loaded whole
     return open(input.node, *input.leaf, threads, cache_ != nullptr, ignore_warning);
 }
 
@@ -341,15 +341,16 @@ std::vector<std::string> warnings_about(const std::filesystem::path& file, std::
     return warnings;
 }
 
-// Results and values that are stored, and found in the cache.
+// Storing results and values, and finding them in the cache.
 
-/// Reports the outputs whose values the cache has.
+/// Adds the output ports whose values the cache has to JobReport::kept.
 void Workbench::add_kept(JobReport& report) const {
     for (const ResultOutput& output : report.result.outputs)
         if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
 }
 
-/// The outputs stored under the run key, if the cache has all values that are needed, also for expectations.
+/// The needed outputs of the result that is stored under the run key; nothing if the cache lacks one of them. Outputs
+/// are needed by other tasks and by expectations.
 std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::string& run_key,
                                            const JobListener& listener, JobReport& report) const {
     std::optional<StepResult> result = cache_->step(run_key);
@@ -373,7 +374,7 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
     return outputs;
 }
 
-/// Stores the result, and the values that are worth it or that other tasks need.
+/// Stores the result in the cache. Stores values that KeepRule selects, and values that other tasks need.
 void Workbench::store(const Job& job, const JobCaching& caching, const std::string& run_key, const Outputs& outputs,
                       std::vector<std::string> warnings, double seconds, JobReport& report) {
     store_values(job, caching, outputs, caching.inputs_cost + seconds, report);
@@ -400,7 +401,7 @@ void Workbench::store_values(const Job& job, const JobCaching& caching, const Ou
         const EncodedValue encoded(value);
         bool is_kept = false;
         if (uses_cache(caching)) {
-            // Most workflows do not use values that steps take by name alone.
+            // Outputs with PortSpec::by_name are rarely used, so they are stored only if they are needed.
             const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
             const bool is_used = !output || !output->by_name || is_needed;
             is_kept = cache_->value(encoded.content()).has_value();
@@ -417,7 +418,7 @@ void Workbench::store_values(const Job& job, const JobCaching& caching, const Ou
             values_.put({job.node, port}, encoded);
         } catch (const Error& error) {
             if (work) throw JobFailure{Cause::output, error};
-            // A file can be read again.
+            // Ignored for a file that was read, because it can be read again.
         }
     }
 }

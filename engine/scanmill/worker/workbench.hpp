@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Does jobs one after the other: reads files, runs filters, writes results. Keeps nothing between them but the scan
-/// that was opened last.
+/// Does jobs one after the other: reads files, runs filters, writes results. Between jobs it keeps only the scan that
+/// was opened last.
 
 #include <chrono>
 #include <functional>
@@ -19,24 +19,24 @@ namespace scanmill {
 
 class CountedWarnings;
 
-/// Receives events of a job; from any thread, one call at a time.
+/// Receives events of a job. Calls come from any thread, one at a time.
 struct JobListener {
     std::function<void(double fraction)> on_progress;
     std::function<void(std::string_view text)> on_warning;
     std::function<bool()> is_cancelled;
-    /// Called before a module is loaded, with its file, and after, with an empty text.
+    /// Called with the module's file before a module is loaded, and with an empty text afterwards.
     std::function<void(std::string module)> on_loading = {};
 };
 
 class Workbench {
 public:
-    /// Library, cache and values must outlive it; `cache` may be null. `scratch`: a folder whose content this may
-    /// remove.
+    /// `library`, `cache` and `values` must outlive the workbench. `cache` may be null. The workbench may remove the
+    /// content of the folder `scratch`.
     Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, RunValues& values,
               std::filesystem::path scratch);
 
-    /// Does not throw: failures are in the report. Enforces the limit of memory, but not that of time. Values that
-    /// other tasks need are in the cache or in the RunValues afterwards.
+    /// Does a job. Does not throw: the report contains failures. Enforces the memory limit, but not the time limit.
+    /// Afterwards, values that other tasks need are in the cache or in the RunValues.
     JobReport perform(const Job& job, const JobListener& listener);
 
 private:
@@ -52,12 +52,14 @@ private:
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void write(const WriteWork& work, JobReport& report);
 
-    /// Takes the value from the RunValues, the cache or its file. If none has it, reports and throws InputLost.
+    /// Takes the value from the RunValues, the cache or its file. If none of them has it, adds it to JobReport::lost
+    /// and throws InputLost.
     Value fetch(const JobInput& input, JobReport& report) const;
-    /// The step's scan, if it can be streamed. The cache is not asked for its value: whether a scan fits into memory
-    /// must not depend on earlier runs.
+    /// The step's scan as a stream; nullptr if it cannot be streamed. A value of the scan in the cache is not used:
+    /// whether a scan fits into memory must not depend on earlier runs.
     std::shared_ptr<const PointStream> stream_for(const StepWork& work, unsigned threads);
-    /// nullptr if the file cannot be streamed. `is_checked`: its content must be that in its key.
+    /// Opens the file as a stream; nullptr if it cannot be streamed. With `is_checked`, requires that the file did not
+    /// change since planning.
     std::shared_ptr<const PointStream> open(std::size_t node, const LeafSource& leaf, unsigned threads, bool is_checked,
                                             const OnWarning& on_warning, const OnWorldPositions& on_positions = {});
 
@@ -82,11 +84,11 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Copies a cached result into the report of a node. Warnings of reading do not name the file: files with equal content
-/// share the result.
+/// Copies a cached result into the report of a node. Cached warnings about reading do not name the file, because files
+/// with equal content share the result.
 void adopt(const StepResult& result, const PlannedStep* step, NodeReport& report);
 
-/// Warnings of reading the file, with its name before each.
+/// The warnings with the name of the file before each.
 std::vector<std::string> warnings_about(const std::filesystem::path& file, std::vector<std::string> warnings);
 
 }  // namespace scanmill

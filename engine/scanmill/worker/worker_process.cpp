@@ -23,7 +23,7 @@ constexpr std::size_t log_lines = 50, longest_line = 1000;
 
 [[noreturn]] void fail(int reason) {
     throw Error("no worker process can be started: {}", std::strerror(reason))
-        .hint("a run without worker processes works, without protection from crashes")
+        .hint("run without worker processes; a filter that crashes then ends the whole program")
         .remedy(Remedy::run_without_workers);
 }
 
@@ -67,7 +67,7 @@ private:
     posix_spawnattr_t attributes_;
 };
 
-/// Closes a descriptor at the end of a scope. Its number is above those that SpawnPlan assigns.
+/// Closes a descriptor at the end of a scope. Moves it above the numbers that SpawnPlan assigns.
 class OwnDescriptor {
 public:
     explicit OwnDescriptor(int descriptor) : descriptor_(descriptor) {
@@ -123,7 +123,7 @@ void WorkerProcess::read_log() {
     if (log_pipe_ < 0) return;
     std::array<char, 1 << 14> block;
     ssize_t length = 0;
-    // Limited: a process that writes without pause must not block this one.
+    // The number of blocks is limited, so that a process that writes without pause does not block the runner.
     for (int blocks = 0; blocks < 64 && (length = ::read(log_pipe_, block.data(), block.size())) > 0; ++blocks) {
         for (const char c : std::string_view(block.data(), static_cast<std::size_t>(length))) {
             if (c != '\n') {
@@ -163,7 +163,7 @@ ProcessEnd WorkerProcess::end(bool kills) {
     siginfo_t ended;
     while (::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
     }
-    ::kill(-process_, SIGKILL);  // the processes that it started; the group's number is not reused yet
+    ::kill(-process_, SIGKILL);  // kills the processes that it started; the group's number is not reused yet
     int status = 0;
     rusage used{};
     while (::wait4(process_, &status, 0, &used) < 0 && errno == EINTR) {

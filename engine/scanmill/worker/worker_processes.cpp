@@ -91,7 +91,7 @@ void WorkerProcesses::wait(const WorkerListener& listener, std::chrono::millisec
     std::vector<pollfd> watched;
     for (const Slot& slot : slots_) {
         const WorkerProcess* process = slot.process.get();
-        const bool has_channel = process && !slot.channel_closed;  // a closed one would end every poll() at once
+        const bool has_channel = process && !slot.channel_closed;  // with a closed channel, poll() would return at once
         for (const int descriptor : {has_channel ? process->channel() : -1, process ? process->log_pipe() : -1,
                                      process ? process->descriptor() : -1})
             watched.push_back({descriptor, POLLIN, 0});
@@ -123,12 +123,12 @@ void WorkerProcesses::check(std::size_t worker, const WorkerListener& listener) 
     Slot& slot = slots_[worker];
     slot.process->read_log();
     pollfd ended{slot.process->descriptor(), POLLIN, 0};
-    const bool has_ended = ::poll(&ended, 1, 0) > 0;  // checked first, so that its last messages are read
+    const bool has_ended = ::poll(&ended, 1, 0) > 0;  // check this before reading, so that the last messages are read
     take_messages(worker, listener);
     if (!slot.process) return;
     if (has_ended) return end_of_process(worker, listener);
-    // The system closes the channel of a process shortly before it reports its end. A process that still runs after
-    // this time has closed the channel itself, and is useless.
+    // The system closes the channel of an ending process shortly before it reports the end. A process that still runs
+    // after `time_to_end` has closed the channel itself and can do no more jobs.
     constexpr std::chrono::seconds time_to_end(1);
     if (slot.channel_closed && Clock::now() - *slot.channel_closed > time_to_end)
         return kill(worker, listener, Cause::signal,
@@ -140,7 +140,7 @@ void WorkerProcesses::take_messages(std::size_t worker, const WorkerListener& li
     Slot& slot = slots_[worker];
     MessageReader& reader = slot.process->reader();
     try {
-        // Limited, as in read_log().
+        // The number of blocks is limited as in read_log().
         for (int blocks = 0; blocks < 64; ++blocks) {
             const MessageReader::Arrival arrival = reader.receive(false);
             while (const std::optional<std::string> bytes = reader.next()) {
@@ -201,11 +201,11 @@ void WorkerProcesses::cancel() {
         if (slot.job && slot.process) slot.process->signal(SIGTERM);
 }
 
-// Ends of jobs: by a report, by a limit, or with their process.
+// A job ends by a report, by a limit, or when its process ends.
 
 namespace {
 
-/// The last line that a process wrote, as a part of a sentence; empty if it wrote none.
+/// The last line that a process wrote, for the end of a sentence; empty if it wrote nothing.
 std::string last_line(const std::vector<std::string>& log) {
     return log.empty() ? "" : fmt::format("; its last output: {}", log.back());
 }
@@ -221,8 +221,8 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
                 byte_size_text(peak_memory), last_line(log));
     if (end.signal == SIGKILL)
         error.set_hint(
-            "the system may have run out of memory: it ends the process that uses most; a limit, `limits: {memory: "
-            "…}`, ends a step before that");
+            "the system may have run out of memory and ended the largest process; `limits: {memory: …}` stops a step "
+            "before that happens");
     return error;
 }
 
@@ -272,12 +272,13 @@ void WorkerProcesses::report_start_failure(std::size_t worker, const WorkerListe
     JobReport report;
     report.outcome = Outcome::failed;
     report.node.failure = failure_of(*slot.job, Cause::exit, *start_failure_);
-    slot.cannot_start = false;  // tried again for the next job
+    slot.cannot_start = false;  // the next job tries again
     report_end(worker, listener, std::move(report), true);
 }
 
 u64 WorkerProcesses::peak_of(const Slot& slot, const ProcessEnd& end) const {
-    // The system's number starts at the size of this process when it started the worker.
+    // The peak that the system reports is at least the size that this process had when it started the worker, so it
+    // counts only if it is larger than the peak of this process.
     const u64 ours = resident_memory(::getpid()).peak;
     return std::max(slot.peak_memory, end.peak_memory > ours || slot.peak_memory == 0 ? end.peak_memory : 0);
 }

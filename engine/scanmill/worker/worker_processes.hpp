@@ -2,9 +2,9 @@
 #pragma once
 /// Worker processes. A filter that crashes its process affects neither this process nor other workers.
 ///
-/// A process is started for its first job, reused, and replaced when it has ended or its state is uncertain. A
-/// process that exceeds its job's limit of time or memory is killed. Memory is limited twice: allocations beyond the
-/// limit fail in the process (RLIMIT_DATA), and the resident size is checked several times a second.
+/// A process starts with its first job and is reused. It is replaced when it has ended or its state is uncertain. A
+/// process that exceeds the time limit or memory limit of its job is killed. Memory is limited in two ways: allocations
+/// beyond the limit fail (RLIMIT_DATA), and the runner checks the resident size several times a second.
 
 #include <deque>
 #include <memory>
@@ -16,45 +16,45 @@
 
 namespace scanmill {
 
-/// The descriptor of the channel to the runner in a worker process.
+/// The file descriptor, in a worker process, of the socket to the runner (the channel).
 inline constexpr int worker_channel = 3;
 
-/// The main function of a worker process: does jobs until the runner closes the channel or ends. Returns the exit code.
+/// The main function of a worker process. Does jobs until the runner closes the channel or ends. Returns the exit code.
 int serve_as_worker();
 
 struct ProcessEnd {
-    int signal = 0;  ///< that ended the process; 0: it exited
+    int signal = 0;  ///< signal that ended the process; 0: the process exited
     int exit_code = 0;
     u64 peak_memory = 0;
 };
 
 class WorkerProcess {
 public:
-    /// Starts `command` in a new process group, with its end of a channel at worker_channel and its standard output and
-    /// error as the log. Throws Error if it cannot be started.
+    /// Starts `command` in a new process group, with a socket to this process at worker_channel. Standard output and
+    /// standard error of the process become its log. Throws Error if it cannot be started.
     explicit WorkerProcess(const std::vector<std::string>& command);
-    /// Kills it and the processes that it started.
+    /// Kills the process and the processes that it started.
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-    /// False if it has ended.
+    /// Sends a message to the process. Returns false if the process has ended.
     bool send(std::string_view message) { return send_message(channel_, message); }
     MessageReader& reader() { return reader_; }
-    /// Adds what it wrote meanwhile to log().
+    /// Reads new output of the process into the log.
     void read_log();
-    /// The last lines, at most 50.
+    /// The last lines of output, at most 50.
     std::vector<std::string> log() const;
     void clear_log();
 
     void signal(int number) const;
-    /// Waits for its end; with `kills`, kills it first.
+    /// Waits until the process ends. With `kills`, kills it first.
     ProcessEnd end(bool kills);
     ResidentMemory memory() const { return resident_memory(process_); }
 
     int channel() const { return channel_; }
     int log_pipe() const { return log_pipe_; }
-    /// Readable once the process has ended.
+    /// A process file descriptor, which becomes readable when the process ends.
     int descriptor() const { return descriptor_; }
 
 private:
@@ -63,15 +63,15 @@ private:
     ProcessEnd end_;
     MessageReader reader_{-1};
     std::deque<std::string> lines_;
-    std::string line_;  // the last line, which is incomplete
+    std::string line_;  // the last line of output while it is incomplete
 };
 
 struct WorkerProcessSettings {
     std::vector<std::string> command;  ///< absolute path and arguments of a program that calls serve_as_worker()
     std::size_t count = 1;
-    std::string cache_folder;  ///< empty: none
-    int keep_policy = 0;
-    /// Receives warnings about the cache. Equal warnings of several workers are passed on once.
+    std::string cache_folder;  ///< empty: no cache
+    int keep_policy = 0;  ///< KeepRule::Policy
+    /// Receives warnings about the cache. Equal warnings of several workers are reported once.
     std::function<void(std::string)> on_note;
 };
 
@@ -87,9 +87,9 @@ public:
     RunValues& values() override { return values_; }
     void wait(const WorkerListener& listener, std::chrono::milliseconds patience) override;
     void cancel() override;
-    /// Starts the first process, so that it is ready when its first job comes.
+    /// Starts the process of worker 0 before its first job.
     void start_early() { ensure(0); }
-    /// Kills all processes without waiting for their ends; the destructor waits. Pre: no more jobs.
+    /// Kills all processes without waiting until they have ended; the destructor waits. Pre: no more jobs.
     void dismiss();
     /// Changes the number of workers. Pre: no job was started.
     void resize(std::size_t count);
@@ -98,12 +98,12 @@ private:
     struct Slot {
         std::unique_ptr<WorkerProcess> process;
         std::optional<Job> job;
-        Clock::time_point begun, checked;
-        bool is_ready = false;  ///< its process has started
-        std::optional<Clock::time_point> channel_closed;  ///< when its process closed the channel
+        Clock::time_point begun, checked;  ///< when the job began, and when its memory was last checked
+        bool is_ready = false;  ///< the process has started
+        std::optional<Clock::time_point> channel_closed;  ///< when the process closed the channel
         bool cannot_start = false;
         u64 peak_memory = 0;
-        std::string loading;  ///< the module that its process is loading; empty: none
+        std::string loading;  ///< file of the module that the process is loading; empty: none
     };
 
     void ensure(std::size_t worker);
@@ -121,7 +121,7 @@ private:
 
     WorkerProcessSettings settings_;
     WorkerStart start_;
-    ScratchFolder scratch_;  // with one folder per worker, and one for values
+    ScratchFolder scratch_;  // contains one folder per worker, and one for values
     RunValues values_;
     std::vector<Slot> slots_;
     std::vector<std::string> notes_;

@@ -11,12 +11,12 @@
 
 namespace scanmill {
 
-/// Receives events of workers. All calls come from within Workers::wait(), except progress and warnings of a worker in
-/// this process: they come from the threads of its filter, one at a time.
+/// Receives events of workers. All calls come from the thread that calls Workers::wait(), except progress and warnings
+/// of InProcessWorker. Those come from the threads of its filter, one call at a time.
 struct WorkerListener {
     std::function<void(std::size_t worker, double fraction)> on_progress;
     std::function<void(std::size_t worker, std::string_view text)> on_warning;
-    /// The worker is idle again.
+    /// Called when a job has ended and the worker is idle again.
     std::function<void(std::size_t worker, JobReport report)> on_end;
 };
 
@@ -26,18 +26,20 @@ class Workers {
 public:
     virtual ~Workers() = default;
     virtual std::size_t size() const = 0;
-    /// Whether the machine has this memory for one more job, beside what the running jobs may still allocate.
+    /// Whether the machine has memory for one more job with this limit in bytes. The running jobs are assumed to use
+    /// their limits.
     virtual bool has_room(u64 /*memory_limit*/) const { return true; }
-    /// False if this worker cannot start and another one can; it gets no more jobs then. Pre: the worker is idle.
+    /// Starts a job. Returns false if this worker cannot start but others may; it must get no more jobs. Pre: the
+    /// worker is idle.
     virtual bool start(std::size_t worker, Job job) = 0;
     virtual RunValues& values() = 0;
-    /// Returns after an event, or after the time given. Does not throw.
+    /// Waits for events and passes them to `listener`. Returns after an event, or after `patience`. Does not throw.
     virtual void wait(const WorkerListener& listener, std::chrono::milliseconds patience) = 0;
-    /// Cancels the running jobs: within two seconds every worker reports its end, as skipped or done.
+    /// Cancels the running jobs. Within two seconds every worker reports the end of its job.
     virtual void cancel() = 0;
 };
 
-/// One worker in this process. A filter that crashes ends the process. The limit of time is not enforced.
+/// One worker in this process. A filter that crashes ends the process. The time limit is not enforced.
 class InProcessWorker : public Workers {
 public:
     InProcessWorker(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, std::function<bool()> is_cancelled)

@@ -42,9 +42,9 @@ struct TooMuch {
 
 /// The size of a tree: the cost to copy it and to walk over it.
 struct Extent {
-    std::size_t nodes = 0;   ///< including keys
-    std::size_t bytes = 0;   ///< of all texts
-    std::size_t levels = 0;  ///< of nesting
+    std::size_t nodes = 0;   ///< number of nodes, including keys
+    std::size_t bytes = 0;   ///< total size of the texts
+    std::size_t levels = 0;  ///< depth of nesting
 };
 
 Position position_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
@@ -84,7 +84,7 @@ public:
     explicit TreeBuilder(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
     YamlNode root;
-    Position begin;  ///< of the document
+    Position begin;  ///< where the document begins
 
     void OnDocumentStart(const YAML::Mark& mark) override { begin = position_of(mark); }
     void OnDocumentEnd() override {}
@@ -94,7 +94,8 @@ public:
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         const auto found = anchors_.find(anchor);
         if (found == anchors_.end()) {
-            diagnostics_.error(position_of(mark), "an alias inside its own anchor; write the value out");
+            diagnostics_.error(position_of(mark),
+                               "the alias is inside the value that it refers to; write the value instead");
             finish({}, 0);
             return;
         }
@@ -135,14 +136,16 @@ private:
         Extent extent;
     };
 
-    /// Counts a tree before it is moved or copied below the open nodes. Throws TooMuch beyond a limit.
+    /// Adds the size of a tree that will be inserted below the open nodes. Throws TooMuch if a limit is exceeded.
     void count(const Extent& extent, Position position) {
         nodes_ += extent.nodes;
         bytes_ += extent.bytes;
-        if (nodes_ > most_nodes) throw TooMuch{position, fmt::format("unfolds to more than {} nodes", most_nodes)};
-        if (bytes_ > most_bytes) throw TooMuch{position, fmt::format("unfolds to more than {} bytes", most_bytes)};
+        if (nodes_ > most_nodes)
+            throw TooMuch{position, fmt::format("the file expands to more than {} nodes", most_nodes)};
+        if (bytes_ > most_bytes)
+            throw TooMuch{position, fmt::format("the file expands to more than {} bytes", most_bytes)};
         if (stack_.size() + extent.levels > most_levels)
-            throw TooMuch{position, fmt::format("unfolds to more than {} levels", most_levels)};
+            throw TooMuch{position, fmt::format("the file expands to more than {} levels", most_levels)};
     }
     static YamlNode node_of(YamlNode::Type type, const YAML::Mark& mark, std::string text = {}) {
         YamlNode node;
@@ -221,7 +224,8 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
         const auto before = std::string_view(text).substr(0, zero);
         const auto line = 1 + std::ranges::count(before, '\n');
         const auto column = zero - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-        diagnostics.error({static_cast<int>(line), static_cast<int>(column)}, "a zero byte; a workflow is text");
+        diagnostics.error({static_cast<int>(line), static_cast<int>(column)},
+                          "found a zero byte; expected a text file");
         return {};
     }
     TreeBuilder builder(diagnostics);
@@ -237,13 +241,13 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
                 break;
             }
             if (!next.root.is_null())
-                diagnostics.error(next.root.position, "a second document begins here; expected one");
+                diagnostics.error(next.root.position, "a second document begins here; expected one document");
             last = next.begin;
         }
     } catch (const YAML::Exception& error) {
         diagnostics.error(position_of(error.mark), "invalid YAML: " + error.msg + quoting_hint(error.msg));
     } catch (const TooMuch& too_much) {
-        diagnostics.error(too_much.position, too_much.what + "; write fewer anchors and aliases");
+        diagnostics.error(too_much.position, too_much.what + "; use fewer anchors and aliases");
     }
     return std::move(builder.root);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A YAML file as a plain tree with the position of every node, and the list of everything that is wrong with it. Only
-/// document.cpp includes the YAML library.
+/// Parses a YAML file into a plain tree with the position of every node, and collects the file's errors and warnings.
+/// Only document.cpp includes the YAML library.
 ///
-/// Refused in addition to invalid YAML: repeated keys, keys that are not plain text, more than one document, and files
-/// whose anchors and aliases unfold to more than a million nodes, 64 MiB of text or 500 levels.
+/// The parser refuses invalid YAML, repeated keys, keys that are not plain text, and more than one document. It also
+/// refuses files that expand to more than a million nodes, 64 MiB of text or 500 levels through anchors and aliases.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@
 
 namespace scanmill {
 
-/// Both count from 1; line 0 means the file as a whole.
+/// Lines and columns count from 1; line 0 means the file as a whole.
 struct Position {
     int line = 0;
     int column = 0;
@@ -33,7 +33,7 @@ struct Diagnostic {
     auto operator<=>(const Diagnostic&) const = default;
 };
 
-/// The errors and warnings about a file, in its order. A repeated message at the same position is dropped.
+/// The errors and warnings about a file, sorted by position. A repeated message at the same position is dropped.
 class Diagnostics {
 public:
     explicit Diagnostics(std::string file) : file_(std::move(file)) {}
@@ -42,7 +42,7 @@ public:
         errors_ += add(position, Diagnostic::Severity::error, message);
     }
     void warning(Position position, std::string message) { add(position, Diagnostic::Severity::warning, message); }
-    /// The same with a format and its arguments.
+    /// Formats `message` with `arguments` and reports it as an error.
     template <class... Arguments>
         requires(sizeof...(Arguments) > 0)
     void error(Position position, fmt::format_string<Arguments...> message, Arguments&&... arguments) {
@@ -66,7 +66,7 @@ private:
 
 /// The end of a message about an unknown name: "it has a, b and c; did you mean 'a'?", or "it has none".
 std::string it_has(std::span<const std::string> names, std::string_view unknown);
-/// The same for the names of the items.
+/// Lists the names of `items` in the same form.
 template <class Items>
     requires requires(const Items& items) { items.begin()->name; }
 std::string it_has(const Items& items, std::string_view unknown) {
@@ -85,9 +85,9 @@ struct YamlNode {
 
     Type type = Type::null;
     Position position;
-    std::string text;                ///< of a scalar
-    std::vector<YamlNode> items;     ///< of a sequence
-    std::vector<YamlEntry> entries;  ///< of a map, in file order
+    std::string text;                ///< only for a scalar
+    std::vector<YamlNode> items;     ///< only for a sequence
+    std::vector<YamlEntry> entries;  ///< only for a map, in file order
 
     bool is_null() const { return type == Type::null; }
     bool is_scalar() const { return type == Type::scalar; }
@@ -101,15 +101,15 @@ struct YamlNode {
 
 struct YamlEntry {
     std::string key;
-    Position position;  ///< of the key
+    Position position;  ///< position of the key
     YamlNode value;
 };
 
 /// Parses `text`. Errors go to `diagnostics`; the tree holds everything that could be read.
 YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics);
 
-/// The bytes of a workflow or batch file. Throws Error for a folder, a file that cannot be opened and a file of more
-/// than 16 MiB.
+/// Returns the bytes of a workflow or batch file. Throws Error for a folder, a file that cannot be opened and a file of
+/// more than 16 MiB.
 std::string read_workflow_file(const std::filesystem::path& file);
 
 }  // namespace scanmill

@@ -91,8 +91,8 @@ bool require_name(const std::string& name, Position position, std::string_view w
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto is_allowed = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
     if (!name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_allowed)) return true;
-    diagnostics.error(position, "'{}' is not a name for {}; expected letters, digits, '-' and '_', a letter first",
-                      name, what);
+    diagnostics.error(position, "'{}' is not a name for {}; expected a letter, then letters, digits, '-' or '_'", name,
+                      what);
     return false;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Reads a YAML tree against a grammar. Every error is reported with its position, and reading goes on.
+/// Reads mappings of a YAML tree by tables of allowed keys. An error is reported with its position; reading continues.
 
 #include <filesystem>
 #include <functional>
@@ -24,28 +24,31 @@ struct Key {
     std::string when_missing{};  ///< the error when the key is absent; empty: the key is optional
 };
 
-/// Calls `read` for every key of the table that the mapping has, in the table's order. Reports missing keys, and
-/// unknown ones with the closest name. `what` names the mapping in messages: "a step".
+/// Calls Key::read for every key in `keys` that the mapping has, in the order of `keys`. Reports missing keys. Reports
+/// unknown keys with the closest known name. `what` names the mapping in messages: "a step".
 void read_mapping(const YamlNode& node, std::string_view what, const std::vector<Key>& keys, Diagnostics& diagnostics);
 
-/// Readers of plain values: a text, and the name of `what` (see require_name).
+/// A reader that stores a text in `target`.
 ReadEntry text_into(std::string& target, Diagnostics& diagnostics);
+/// A reader that stores a name in `target`; see require_name() for `what`.
 ReadEntry name_into(std::string& target, std::string what, Diagnostics& diagnostics);
-/// The unit of a scan; after an error `target` is unknown.
+/// A reader that stores the unit of a scan in `target`; LengthUnit::unknown after an error.
 ReadEntry unit_into(LengthUnit& target, Diagnostics& diagnostics);
-/// The rule for a scan's invalid rows; after an error `target` is by_format.
+/// A reader that stores the rule for a scan's invalid rows in `target`; InvalidRows::by_format after an error.
 ReadEntry invalid_into(InvalidRows& target, Diagnostics& diagnostics);
 
-/// The key `scanmill: 1`, which every file has.
+/// The key `scanmill: 1`, which every workflow and batch file must have.
 Key grammar_version_key(Diagnostics& diagnostics);
 
-/// Whether `node` is a mapping, or a list; otherwise reports the node found and `expected`.
+/// Whether `node` is a mapping. If not, reports what it is and what was `expected`.
 bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
+/// Whether `node` is a list. If not, reports what it is and what was `expected`.
 bool require_list(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
-/// The scalar's text; nothing after an error.
+/// The text of a scalar. Reports any other node and returns nothing.
 std::optional<std::string> require_text(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
 
-/// Whether `name` is a valid name of an input, parameter, step or variant: letters, digits, `-`, `_`; a letter first.
+/// Whether `name` begins with a letter and consists of letters, digits, `-` and `_`. If not, reports that it is not a
+/// valid name for `what`: "a step".
 bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics);
 
 // Texts with placeholders in braces, as "{scan}-{variant}.stl".
@@ -60,7 +63,7 @@ std::string with_placeholders(const std::string& text, const std::function<std::
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
 std::string with_stem(const std::string& text, const std::filesystem::path& file);
 
-/// The paths of poses, truths and inputs of a list of scans may also contain {folder}, see folder_name().
+/// The paths of poses, truths and inputs of a list of scans may contain {stem} and {folder}; see folder_name().
 void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
 std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file);
 

@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    /// Reads a mapping that may be empty, entry by entry.
+    /// A reader that calls `read` for every entry of a mapping; the mapping may be empty.
     ReadEntry each(std::string_view expected, ReadEntry read) {
         return [this, expected, read](const YamlEntry& entry) {
             if (entry.value.is_null() || !require_map(entry.value, expected, diagnostics_)) return;
@@ -181,7 +181,7 @@ private:
         workflow.parameters.push_back(std::move(parameter));
     }
 
-    /// A step that cannot be read becomes one without a filter, so that later checks expect a gap there.
+    /// A step without a filter, in place of a step that could not be read. Planning does not report it again.
     static StepItem unreadable(const YamlNode& node) {
         StepSyntax step;
         step.position = node.position;
@@ -239,10 +239,10 @@ private:
             diagnostics_.error(result.position,
                                "an alternative of several steps needs a name, as `{name: …, steps: […]}`");
         else if (!first)
-            return result;  // a fork names its own alternatives
+            return result;  // the alternatives of the nested one-of have names
         else
             result.name = first->name();
-        if (result.name.empty())  // after an error; a unique name keeps its variant apart from others
+        if (result.name.empty())  // after an error; a unique name avoids a second error about equal variants
             result.name = fmt::format("line-{}-column-{}", result.position.line, result.position.column);
         return result;
     }
@@ -267,7 +267,7 @@ private:
                                    entry.key, filter->key);
         }
         if (!filter) {
-            diagnostics_.error(node.position, "a step without a filter; expected {}", step_forms);
+            diagnostics_.error(node.position, "the step has no filter; expected {}", step_forms);
             return step;
         }
         step.filter = filter->key;
@@ -348,7 +348,7 @@ ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics)
         if (!require_list(entry.value, "a list of values to sweep over", diagnostics)) return;
         result.sweep = true;
         for (const YamlNode& item : entry.value.items) add(item);
-        if (entry.value.items.empty()) diagnostics.error(entry.position, "a sweep over no values");
+        if (entry.value.items.empty()) diagnostics.error(entry.position, "the sweep has no values");
     };
     if (node.is_map())
         read_mapping(node, "a value", {{"sweep", sweep}}, diagnostics);

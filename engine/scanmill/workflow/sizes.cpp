@@ -29,7 +29,7 @@ constexpr std::array<SizeUnit, 10> units{{{"TiB", 0x1p40},
 
 struct TimeUnit {
     std::string_view symbol;
-    double units_per_second, seconds;  // one of them is 1, so that whole numbers stay whole
+    double units_per_second, seconds;  // one of the two is 1, so that whole numbers stay whole
 };
 // In the order in which they are tried as suffixes: `ms` before `s`.
 constexpr std::array<TimeUnit, 4> time_units{{{"ms", 1000, 1}, {"min", 1, 60}, {"h", 1, 3600}, {"s", 1, 1}}};
@@ -75,7 +75,7 @@ std::string duration_text(double seconds) {
 
 namespace {
 
-/// The text before the exponent; empty unless the text ends in an exponent that follows a unit.
+/// The text before the exponent; nothing if the text does not end in a unit and an exponent.
 std::optional<std::string_view> without_exponent(std::string_view text, int power) {
     const auto exponents =
         power == 2 ? std::array<std::string_view, 3>{"^2", "²", "2"} : std::array<std::string_view, 3>{"^3", "³", "3"};
@@ -108,7 +108,7 @@ bool is_absolute(const Length& length) {
 }
 
 double resolved_length_power(const Length& written, int power, const LengthScale& scale) {
-    // Only the unit is resolved: the amount may be 0 or negative.
+    // Resolve the unit without the amount, because the amount may be 0 or negative.
     if (scale.unit == LengthUnit::unknown && is_absolute(written))
         throw Error("{}{} needs a scan of known unit; this scan's unit is not declared", written.text(), power)
             .hint(fmt::format("declare it with `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A workflow as it is written, with the position of everything: the grammar's syntax tree. Names are resolved against
-/// the installed filters later, by plan.hpp.
+/// The syntax tree of a workflow file: every element as written, with its position. make_plan() resolves the names
+/// against the installed filters later.
 
 #include <optional>
 #include <set>
@@ -19,17 +19,17 @@ namespace scanmill {
 struct NameUse {
     std::string name;  ///< without the $
     Position position;
-    std::size_t item = 0;  ///< index into `literal.items`, where the text is still empty
+    std::size_t item = 0;  ///< index into `literal.items`, where the text stays empty until the value replaces it
 };
 
-/// One written value: one text or several, some of which may be uses of workflow parameters.
+/// One value as written: a text or a list of texts. Each text is a literal or the use of a workflow parameter.
 struct WrittenValue {
     Position position;
     WrittenParameter literal;
     std::vector<NameUse> uses;
 };
 
-/// A value, or `{sweep: [value, …]}`, which has several: everything after it runs once for each.
+/// A value, or the values of `{sweep: [value, …]}`. The workflow has one variant per value of a sweep.
 struct ValueExpression {
     Position position;
     std::vector<WrittenValue> values;
@@ -70,8 +70,8 @@ struct StepSyntax {
     std::vector<InputWiring> in;
     std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
     std::vector<Expectation> expect;
-    std::string file{};  ///< that the positions are in; empty: the workflow's
-    bool may_be_left_out = false;  ///< variants without the values that `in` names may omit the step
+    std::string file{};  ///< contains the positions; empty: the workflow file
+    bool may_be_left_out = false;  ///< variants that lack a value named by `in` omit the step
 
     /// How other steps refer to this one.
     const std::string& name() const { return id.empty() ? filter : id; }
@@ -101,11 +101,11 @@ struct WorkflowInput {
     Kind kind = kind_of<PointCloud>();
     bool list = false;
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;  ///< may contain {stem}; empty: the file's own
-    InvalidRows invalid = InvalidRows::by_format;  ///< of points
+    std::string frame;  ///< may contain {stem}; empty: the frame in the file
+    InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     std::string help;
-    std::vector<Kind> also{};  ///< other kinds that its file may hold
-    bool by_name = false;      ///< wired by `in` alone
+    std::vector<Kind> also{};  ///< other kinds that the input's file may hold
+    bool by_name = false;      ///< feeds only ports that name this input in `in`
 };
 
 struct WorkflowParameter {
@@ -125,23 +125,23 @@ struct Workflow {
     std::string file;
     std::string name;
     std::string summary;
-    std::vector<WorkflowInput> inputs;  ///< scans feed the first: one at a time, or all at once when it is a list
+    std::vector<WorkflowInput> inputs;  ///< the first takes the scans: one per run, or all of them if it is a list
     std::vector<WorkflowParameter> parameters;
     std::vector<StepItem> steps;
     std::vector<WorkflowOutput> outputs;
-    /// Names used as `$name` in steps, outputs and defaults, including those that could not be read.
+    /// Names used as `$name` in steps, outputs and defaults, also in parts that could not be read.
     std::set<std::string> mentions;
 };
 
-/// The workflow in `text`. Errors go to `diagnostics`; everything that could be read is returned.
+/// Parses `text`. Errors go to `diagnostics`; the result holds everything that could be read.
 Workflow parse_workflow(const std::string& text, Diagnostics& diagnostics);
 
-/// A value, a list of values, `$name` (also within a list) or `{sweep: [value, …]}`. Wrong values are reported and left
-/// out.
+/// Reads a value, a list of values, `$name` (also within a list) or `{sweep: [value, …]}`. Reports wrong values and
+/// leaves them out.
 ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics);
-/// A value as in a workflow, from the command line: "0.1 %diag", "[0, 1]", "{sweep: [1, 2]}".
+/// Parses a value from the command line, written as in a workflow: "0.1 %diag", "[0, 1]", "{sweep: [1, 2]}".
 ValueExpression parse_value_expression(const std::string& text, Diagnostics& diagnostics);
-/// Reports uses of parameters, which are not allowed here, and removes their values. `what` begins the message.
+/// Reports every value that uses a workflow parameter, and removes it. `what` begins the message: "a default".
 void refuse_uses(ValueExpression& value, std::string_view what, Diagnostics& diagnostics);
 
 }  // namespace scanmill

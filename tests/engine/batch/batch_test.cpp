@@ -145,7 +145,7 @@ TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
 
 TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {
     EXPECT_THAT(rest("set: {a b: 1}\n"), ElementsAre(HasSubstr("'a b' is not a name for a parameter")));
-    EXPECT_THAT(rest("set: {n: {sweep: []}}\n"), ElementsAre(HasSubstr("a sweep over no values")));
+    EXPECT_THAT(rest("set: {n: {sweep: []}}\n"), ElementsAre(HasSubstr("the sweep has no values")));
     EXPECT_THAT(rest("set: {n: {sweep: [1, $n]}}\n"), ElementsAre(HasSubstr("cannot refer to a parameter")));
     EXPECT_THAT(rest("set: [n]\n"), ElementsAre(HasSubstr("expected a map of parameters")));
     EXPECT_THAT(rest("set: {n: }\n"), ElementsAre(HasSubstr("found nothing")));

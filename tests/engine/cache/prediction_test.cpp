@@ -22,7 +22,7 @@ TEST_F(CachedRun, Prediction_ContainsWhatWillRunAndWhy) {
     EXPECT_FALSE(predicted[1].will_run);
     EXPECT_THAT(predicted[1].needed, ElementsAre("points"));
     EXPECT_TRUE(predicted[2].will_run);
-    EXPECT_THAT(predicted[2].why, HasSubstr("has not run on such inputs"));
+    EXPECT_THAT(predicted[2].why, HasSubstr("has not run with these inputs"));
     EXPECT_THAT(predict(graph_, nullptr)[0].why, HasSubstr("no cache"));
 }
 
@@ -37,7 +37,7 @@ TEST_F(CachedRun, Prediction_ContainsWhyAValueIsMissing) {
 TEST_F(CachedRun, PredictionOfAValueThatTookLong_DoesNotCallItQuick) {
     keep_ = KeepRule::Policy::never;
     run("  - test-step: {mode: slow}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step.points}\n");
-    EXPECT_THAT(predict(graph_, &cache_)[1].why, testing::AllOf(HasSubstr("did not store it, or it was removed since"),
+    EXPECT_THAT(predict(graph_, &cache_)[1].why, testing::AllOf(HasSubstr("did not store it, or it was removed later"),
                                                                 testing::Not(HasSubstr("quick"))));
     StepResult quick = *predict(graph_, &cache_)[1].cached;
     quick.seconds = 0;

@@ -54,7 +54,7 @@ TEST(RunValues, FolderThatCannotBeWritten_IsAnErrorThatNamesTheWayOut) {
         values.put({0, ""}, EncodedValue(two_points()));
         FAIL();
     } catch (const Error& error) {
-        EXPECT_THAT(error.sentence(), testing::HasSubstr("cannot be passed on"));
+        EXPECT_THAT(error.sentence(), testing::HasSubstr("cannot be passed to the next step"));
         EXPECT_THAT(error.hint(), testing::HasSubstr("TMPDIR"));
     }
 }

@@ -94,7 +94,7 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {files + "[[]]\n", "workflows 0: Value type not permitted", "expected a workflow file"},
         {head + "set: {n: $m}\n", "set n: Failed to match regex", "cannot refer to a parameter"},
         {head + "set: {n: {sweep: []}}\n", "set n sweep: Array should contain no fewer than 1",
-         "a sweep over no values"},
+         "the sweep has no values"},
         {head + "set: {n: {swep: [1]}}\n", "set n: Object contains a property" + known_only + "'swep'",
          "a value has no key 'swep'"},
         {head + "set: {n: }\n", "set n: Value type not permitted", "found nothing"},

@@ -44,7 +44,7 @@ TEST_F(OutputFilesTest, FileThatIsAnothersFolder_IsRefusedInEitherOrder) {
     EXPECT_THAT(sentence_of([&] {
                     outputs.add("a.stl/x/b.stl", {"l", ""}, "B");
                 }),
-                HasSubstr("into a folder that is a file of A"));
+                HasSubstr("into a folder that A writes as a file"));
     OutputFiles others = files();
     others.add("a.stl/x/b.stl", {"l", ""}, "B");
     EXPECT_THAT(sentence_of([&] { others.add("a.stl", {"k", ""}, "A"); }), HasSubstr("the folder that B writes into"));

@@ -96,7 +96,7 @@ TEST_F(Check, StepsThatCannotBeRead_AreNotReportedToShareAnId) {
 }
 
 TEST_F(Check, StepWithoutFilter_IsAnError) {
-    EXPECT_THAT(steps("  - id: a\n"), ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("a step without a filter"))));
+    EXPECT_THAT(steps("  - id: a\n"), ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("the step has no filter"))));
 }
 
 TEST_F(Check, RequiredParameterLeftOut_SaysWhatItTakes) {

@@ -56,7 +56,7 @@ TEST_F(CheckWiring, LaterStepAsSource_IsNoEarlierStep) {
 
 TEST_F(CheckWiring, NameOfTwoSteps_StandsForNone) {
     EXPECT_THAT(steps("  - thin: {size: 1 u}\n  - thin: {size: 2 u}\n  - pair:\n    in: {points: thin}\n"),
-                ElementsAre(HasSubstr("'thin' is the name of several steps; give the one you mean an id")));
+                ElementsAre(HasSubstr("'thin' is the name of several steps; give one of them an `id`")));
 }
 
 TEST_F(CheckWiring, SeveralValuesForASinglePort_AreAnError) {

@@ -60,7 +60,7 @@ TEST_F(ListInput, WithoutScans_IsRefused) {
 TEST_F(ListInput, FirstInputFedByName_SaysThatScansFeedIt) {
     request_.inputs = {{"views", {"x.xyz"}}};
     EXPECT_THAT(test::sentence_of([&] { prepare(step, {scan("a.xyz")}, "", views); }),
-                HasSubstr("'views' is the workflow's first, which the scans feed"));
+                HasSubstr("'views' is the workflow's first input, which takes the scans"));
 }
 
 TEST_F(ListInput, FramesNamedByStem_AreThoseOfTheFiles) {
