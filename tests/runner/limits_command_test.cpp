@@ -65,7 +65,7 @@ TEST_F(Limits, TimeOfACellIsOverBeforeARetry_SaysWhatIsNotDone) {
     write_scans("a", 1);
     EXPECT_THAT(
         error_under("{time: 400 ms, retries: 1}", "time", "{path: scans/a_01.xyz, set: {mode: loop}}"),
-        AllOf(ContainsRegex("the limit of a cell is 400 ms, [0-9]+\\.[0-9]+ s were used and this is not done\n"),
+        AllOf(ContainsRegex("the limit of a cell is 400 ms, [0-9]+\\.[0-9]+ s were used and this task is not done\n"),
               HasSubstr("\n  in step 'last' (w.yaml:"), HasSubstr("\n  on scan 'scans/a_01.xyz'"), HasSubstr(way_out)));
 }
 

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-/// "+1 %, 1 %, +0.01 mm or exact", for messages.
+/// The accepted forms of a rule, for messages: "+1 %, +0.01 mm, +0.1 %diag or exact".
 std::string_view forms_of(Unit unit) {
     switch (unit) {
         case Unit::length: return "+1 %, +0.01 mm, +0.1 %diag or exact";
@@ -33,7 +33,7 @@ std::string_view forms_of(Unit unit) {
 double length_amount(std::string_view text, int power, const LengthScale& scale) {
     const Length written = power > 1 ? parse_length_power(text, power) : Length::parse(text);
     if (written.in() == Length::In::spacing)
-        throw Error("'{}' is not fixed: the spacing of the accepted run's points is not recorded", text);
+        throw Error("'{}' cannot be used: the point spacing of the accepted run is not recorded", text);
     if (power > 1) return resolved_length_power(written, power, scale);
     return written.amount() == 0 ? 0 : written.resolved(scale).value();
 }
@@ -49,7 +49,7 @@ double absolute_amount(std::string_view text, Unit unit, const LengthScale& scal
     if (const int power = power_of_length(unit); power > 0) return length_amount(text, power, scale);
     if (unit == Unit::angle) return Angle::parse(text).in_radians();
     if (unit == Unit::seconds) return parse_duration(text);
-    if (unit == Unit::boolean) throw Error("'{}' is not for yes or no", text);
+    if (unit == Unit::boolean) throw Error("'{}' cannot limit a metric that is true or false", text);
     return number_amount(text);
 }
 
@@ -74,16 +74,16 @@ Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, 
         tolerance.amount = tolerance.is_relative ? Ratio::parse(amount).value() : absolute_amount(amount, unit, scale);
         if (!std::isfinite(tolerance.amount)) throw Error("{} is too large", quote(amount));
     } catch (const UnresolvedLength&) {
-        throw;  // the rule is right, but not for this scan
+        throw;  // the rule is valid, but its length cannot be converted for this scan
     } catch (const Error& error) {
         if (error.remedy() == Remedy::declare_unit) throw;
-        throw Error(error.finding()).expected(forms_of(unit));  // other forms than those of a parameter
+        throw Error(error.finding()).expected(forms_of(unit));  // replaces the forms that a parameter expects
     }
     return tolerance;
 }
 
 void require_rule_fits(std::string_view text, Unit unit, Better better) {
-    // Any unit and diagonal will do: every length can be converted from millimetres.
+    // The unit and the diagonal are arbitrary: only the form and the sign are checked.
     const Tolerance tolerance = parse_tolerance(text, unit, LengthUnit::millimetre, 1);
     if (better == Better::neither || text == "exact") return;
     const bool is_right = better == Better::smaller ? tolerance.may_fall : tolerance.may_rise;
@@ -102,7 +102,7 @@ Tolerance parse_cost_tolerance(std::string_view text) {
     if (!text.ends_with('%') || !text.starts_with('+'))
         throw Error("{} is not a limit of a cost; {}", quote(text), expected);
     const Tolerance tolerance = parse_tolerance(text, Unit::number, LengthUnit::unknown, std::nan(""));
-    if (tolerance.amount <= 0) throw Error("{} leaves no room for noise; {}", quote(text), expected);
+    if (tolerance.amount <= 0) throw Error("{} does not allow for noise; {}", quote(text), expected);
     return tolerance;
 }
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The gate of a batch: by how much its metrics, costs and outputs may differ from the accepted run before it trips.
+/// The gate of a batch limits by how much metrics, costs and outputs may differ from the accepted run.
 ///
-/// A rule's text states what is allowed: `+1 %` the value may rise by 1 % of the accepted one, and fall as it likes;
-/// `-1 %` the reverse; `1 %` it may do neither by more; `+0.01 mm`, `-2`, `3 deg`: the same as absolute amounts, in the
-/// metric's unit; `exact` it must be equal. The costs `seconds`, `cpu-seconds` and `memory` take `+20 %`; `outputs` is
-/// `exact`: no output file may change a byte.
+/// A rule's text states what is allowed:
+/// - `+1 %`: the value may rise by 1 % of the accepted value, and fall without limit;
+/// - `-1 %`: the value may fall by 1 % of the accepted value, and rise without limit;
+/// - `1 %`: the value may rise or fall by 1 % of the accepted value;
+/// - `+0.01 mm`, `-2`, `3 deg`: the same with an absolute amount;
+/// - `exact`: the value must be equal.
+/// Rules for the costs `seconds`, `cpu-seconds` and `memory` have the form `+20 %`. The rule for `outputs` is `exact`:
+/// no byte of an output file may change.
 ///
-/// A rule NAME is for the measurements of a cell (see is_measurement()) that have this metric; else for the outputs
-/// that have it as a property; else for every step that reports it. A rule STEP.NAME is for that step.
+/// A rule NAME applies to the measurements of a cell (see is_measurement()) that have this metric. Without such a
+/// measurement, it applies to the outputs that have NAME as a property. Without such an output, it applies to every
+/// step that reports NAME. A rule STEP.NAME applies to that step.
 
 #include <optional>
 #include <string>
@@ -31,34 +36,36 @@ struct GateRule {
 
 struct Gate {
     std::vector<GateRule> rules;
-    unsigned repeats = 1;  ///< how often a run measures its costs
+    unsigned repeats = 1;  ///< number of times that a run measures its costs
 
     bool operator==(const Gate&) const = default;
 };
 
-/// What a rule's text allows, for a metric of a known unit.
+/// The difference that a rule allows, for a metric of a known unit.
 struct Tolerance {
-    bool may_rise = false, may_fall = false;  ///< without limit
+    bool may_rise = false, may_fall = false;  ///< whether the value may rise or fall without limit
     double amount = 0;  ///< in the metric's unit, or a share of the accepted value; 0: exact
     bool is_relative = false;
 };
 
-/// `lengths` is the unit of the metric's lengths, `diagonal` what `%diag` refers to (NaN: unknown). Throws Error with
-/// the forms that the unit accepts: no sign nor unit, another dimension, a length that cannot be converted.
-/// The amount of a relative rule is a share of the accepted value's magnitude. A ratio's absolute amount is a plain
-/// number: `-0.01` is one percentage point. Amounts are finite and not negative; `spacing` is refused.
+/// Parses a rule's text. `lengths` is the unit of the metric's lengths. `diagonal` is the length to which `%diag`
+/// refers; NaN: unknown. The amount of a relative rule is a share of the accepted value's magnitude. A ratio's absolute
+/// amount is a plain number: `-0.01` is one percentage point. Amounts are finite and not negative.
+///
+/// Throws Error with the accepted forms: for a text of another form, for a unit of another dimension, for a length that
+/// cannot be converted, and for `spacing`.
 Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal);
 
-/// Checks a rule of a batch before any value is known. Throws Error as parse_tolerance() does, and for a rule that
-/// limits improvements: without a sign, or with the wrong one, although one direction is the better one.
+/// Checks a rule of a batch before any value is known. Throws Error as parse_tolerance() does. If one direction is
+/// better, also throws Error for a rule that limits improvements: one without a sign or with the wrong sign.
 void require_rule_fits(std::string_view text, Unit unit, Better better);
 
-/// The labels of the steps that a batch's `measure` adds begin with it.
+/// Begins the labels of the steps that a batch's `measure` adds.
 inline constexpr std::string_view measurement_prefix = "measure-";
-/// Whether the numbers of the step with this label are measurements.
+/// Whether a batch's `measure` added the step with this label, so that its metrics are measurements.
 inline bool is_measurement(std::string_view label) { return label.starts_with(measurement_prefix); }
 
-/// `seconds`, `cpu-seconds` and `memory`.
+/// Whether the name is one of the costs `seconds`, `cpu-seconds` and `memory`.
 bool is_cost(std::string_view metric);
 /// Parses the rule for a cost: a positive share with a plus sign, `+20 %`. Throws Error for anything else.
 Tolerance parse_cost_tolerance(std::string_view text);

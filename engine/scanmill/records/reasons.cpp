@@ -16,7 +16,7 @@ std::string value_in(const Texts& texts, const std::string& name) {
     return found == texts.end() ? "" : found->second;
 }
 
-/// Nothing if the plan keys are equal.
+/// The differences between the node and a step of an earlier run; empty if the plan keys are equal.
 std::vector<std::string> differences(const std::vector<NodePrediction>& prediction, FilterLibrary& library,
                                      const RunGraph& graph, std::size_t index, const PastStep& past) {
     const RunNode& node = graph.nodes[index];
@@ -45,7 +45,7 @@ std::vector<std::string> differences(const std::vector<NodePrediction>& predicti
     return found;
 }
 
-/// Empty if the step never ran.
+/// Why the node runs again; empty if it never ran in an earlier run.
 std::string reason(const std::vector<NodePrediction>& prediction, FilterLibrary& library, const RunGraph& graph,
                    const RunRecords& records, std::size_t index) {
     const RunNode& node = graph.nodes[index];
@@ -63,8 +63,9 @@ std::string reason(const std::vector<NodePrediction>& prediction, FilterLibrary&
         return fmt::format("it did not complete in run {}", run);
     if (least.empty())
         return fmt::format(
-            "its result is not in the cache although no parameter changed since run {}; the order of its inputs, a "
-            "file named by a parameter or Scanmill may have changed, or the cache removed it",
+            "its result is not in the cache, but no parameter changed since run {}; the order of its inputs, a file "
+            "that "
+            "a parameter names, or Scanmill may have changed, or the result was removed from the cache",
             run);
     std::string text;
     for (const std::string& difference : least) text += (text.empty() ? "" : ", ") + difference;

@@ -14,7 +14,7 @@ std::optional<CostRecord> cost_of(const NodeReport& report) {
     return CostRecord{report.effort.seconds, report.effort.cpu_seconds, report.effort.peak_memory};
 }
 
-/// Empty unless all nodes of the cell ran.
+/// The costs of the cell, added up over its nodes; empty unless all its nodes ran.
 std::vector<CostRecord> cost_of(const RunCell& cell, const std::vector<std::optional<CostRecord>>& nodes) {
     CostRecord sum;
     for (const std::size_t node : cell.nodes) {
@@ -77,7 +77,7 @@ void Recorder::finish(const RunReport& report) {
     const std::string outcome = report.interrupted ? "interrupted" : std::string(name_of(report.outcome()));
     if (!costs_.empty()) flush();
     if (!attempt([&] { records_->end(run_, steps_, cells_, outcome, seconds.count()); }) && records_)
-        warn(fmt::format("this run is not recorded to its end: {}", trouble_));
+        warn(fmt::format("the records of this run are incomplete: {}", trouble_));
     steps_.clear();
     cells_.clear();
 }

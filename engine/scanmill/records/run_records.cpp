@@ -20,7 +20,7 @@ namespace {
 
 using tables::RowId;
 
-/// Runs `action`; errors of SQLite become Errors that name the file.
+/// Runs `action`. Converts exceptions of SQLite to Errors that name the file.
 template <class Action>
 auto about(const std::string& file, Action&& action) {
     try {
@@ -30,7 +30,8 @@ auto about(const std::string& file, Action&& action) {
     }
 }
 
-/// The end of a run, counted once. A node whose cached value was lost has two steps, and counts as run.
+/// The end of a run, with the final counts. A node whose cached value was lost has two rows in `step`; it counts once,
+/// as a step that ran.
 struct RunEnd {
     std::string ended, outcome;
     double seconds = 0;
@@ -52,7 +53,7 @@ constexpr auto fields(const RunRow*) {
     return std::tuple{field("started", &RunRow::started), field("start", &RunRow::start).flat()};
 }
 
-/// Who accepted a run, or revoked an acceptance, and why.
+/// An acceptance of a run or the revocation of an acceptance: time, person and reason.
 struct Decision {
     std::string at, who, why;
 };
@@ -80,7 +81,7 @@ CREATE VIEW run_counts AS SELECT run.id AS run,
     return sql;
 }
 
-/// Identifies the layout: a positive number of 31 bits.
+/// A positive number of at most 31 bits that identifies the layout.
 int layout_number() {
     static const int number = [] {
         KeyBuilder key;
@@ -115,7 +116,7 @@ struct RunRecords::Database {
             .hint("use the Scanmill that wrote them, or move the file away to start a new history");
     }
 
-    static constexpr int patience = 1000;  // milliseconds, while another run writes
+    static constexpr int patience = 1000;  // milliseconds to wait while another run writes
     std::string file;
     SQLite::Database sqlite;
     tables::Statements statements;
@@ -127,7 +128,7 @@ RunRecords::RunRecords(std::unique_ptr<Database> database) : database_(std::move
 RunRecords::RunRecords(RunRecords&&) noexcept = default;
 RunRecords::~RunRecords() = default;
 
-/// A symbolic link may lead anywhere; runs write only into their output folder.
+/// Throws Error if `file` is a symbolic link out of its folder, because runs write only into their output folder.
 static void require_in_its_folder(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_symlink(file, ignored)) return;
@@ -243,7 +244,7 @@ RunSummary RunRecords::summary(std::int64_t id) const {
         return database_->sqlite.execAndGet("SELECT COALESCE(MAX(id), 0) FROM run").getInt64();
     });
     throw Error("there is no run {} in '{}'; {}", id, database_->file,
-                last == 0 ? "there are none" : fmt::format("there are 1 to {}", last));
+                last == 0 ? "it has no runs" : fmt::format("it has the runs 1 to {}", last));
 }
 
 std::vector<RunSummary> RunRecords::runs() const { return summaries(std::nullopt); }

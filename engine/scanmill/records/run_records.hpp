@@ -2,9 +2,9 @@
 #pragma once
 /// The history of runs: one SQLite file per output folder, to which every run appends.
 ///
-/// Rows are never changed or removed. A run without an end was killed. The file may be on a network file system
-/// (rollback journal), and any SQLite program can read it. Its tables follow from the fields of the records
-/// (report/run_report.hpp, detail/table.hpp), so a Scanmill with other fields has another layout, and refuses the file.
+/// Rows are never changed or removed. A run without an end is still running or was killed. The file may be on a network
+/// file system, because it uses a rollback journal. Any SQLite program can read it. Its tables derive from the fields
+/// of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with other fields refuses the file.
 
 #include <filesystem>
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace scanmill {
 
-/// A run was accepted as the baseline of its batch.
+/// The acceptance of a run as the baseline of its batch.
 struct Acceptance {
     std::int64_t id = 0, run = 0;
     std::string batch, at, who, why;
@@ -24,37 +24,37 @@ struct Acceptance {
     std::string revoked_by, revoked_why;
 };
 
-/// What a cell of earlier runs cost.
+/// The costs of a cell in earlier runs.
 struct PastCosts {
     std::string workflow, scan, variant;
     std::vector<CostRecord> costs;  ///< the oldest first
 };
 
-/// A step of an earlier run, for comparison with the next.
+/// A step of an earlier run, for comparison with a step of the next run.
 struct PastStep {
     std::int64_t run = 0;
     std::uint64_t seed = 0;
     std::string filter, build, plan_key;
     int filter_version = 0;
     Texts authored;
-    bool done = true;
+    bool done = true;  ///< false: the step failed or was skipped
 };
 
-/// The file's name in an output folder.
+/// Name of the records file in an output folder.
 inline constexpr const char* records_file = "scanmill.sqlite";
 
 class RunRecords {
 public:
-    /// Opens the records for appending, or creates them. Throws Error for a file of another layout, one that is not a
-    /// database, and an unwritable folder.
+    /// Opens the records for appending, or creates them. Throws Error for a file of another layout, for a file that is
+    /// not a database, and for an unwritable folder.
     static RunRecords append_to(const std::filesystem::path& file);
-    /// Opens records for reading. Functions below that are not const need append_to(). Throws Error as append_to()
-    /// does.
+    /// Opens records for reading. The functions below that are not const need append_to() instead. Throws Error as
+    /// append_to() does.
     static RunRecords read(const std::filesystem::path& file);
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();
 
-    /// The new run's number.
+    /// Adds a run and returns its number.
     std::int64_t begin(const RunStart& start);
     /// Appends rows in one transaction. Throws Error if the disk is full.
     void add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
@@ -65,26 +65,27 @@ public:
     /// Appends the costs of one more pass over cells of the run. Pre: this object added the cells.
     void add_costs(std::int64_t run, const std::vector<PastCosts>& cells);
 
-    /// Makes the run the baseline of its batch. Throws Error for an unknown run and one that was killed or interrupted.
+    /// Makes the run the baseline of its batch. Throws Error for an unknown run, and for a run that was killed or
+    /// interrupted.
     void accept(std::int64_t run, const std::string& who, const std::string& why);
-    /// Revokes the newest valid acceptance of the batch, so that the one before it holds again. Throws Error if there
-    /// is none.
+    /// Revokes the newest valid acceptance of the batch. The valid acceptance before it then holds again. Throws Error
+    /// if the batch has no valid acceptance.
     void revoke(const std::string& batch, const std::string& who, const std::string& why);
     /// The acceptances of all batches, including revoked ones, oldest first.
     std::vector<Acceptance> acceptances() const;
-    /// The run that was accepted last for this batch, and not revoked.
+    /// The newest acceptance of this batch that was not revoked.
     std::optional<Acceptance> baseline(const std::string& batch) const;
-    /// The costs of the batch's cells in the runs `first` <= run < `end` on this machine with so many threads and jobs;
-    /// of the newest `most_past_runs` of those that measured any.
+    /// The costs of cells in earlier runs with numbers `first` <= run < `end`. Considers only runs that have the
+    /// workflow, machine, threads and jobs of `like` and that measured costs; of these, the newest `most_past_runs`.
     static constexpr int most_past_runs = 20;
     std::vector<PastCosts> past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const;
 
     /// All runs in the order of their numbers.
     std::vector<RunSummary> runs() const;
-    /// Throws Error for an unknown run, naming the existing ones.
+    /// Throws Error for an unknown run. The message contains the numbers of the existing runs.
     RunSummary summary(std::int64_t id) const;
     RunDetails run(std::int64_t id) const;
-    /// The steps with this label on this scan in the newest run of the workflow that has any.
+    /// The steps with this label on this scan, in the newest run of the workflow that has such steps.
     std::vector<PastStep> last_steps(const std::string& workflow, const std::string& scan,
                                      const std::string& label) const;
 

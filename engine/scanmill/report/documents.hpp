@@ -102,9 +102,10 @@ struct StepName {
 };
 constexpr auto fields(const StepName*) {
     using R = StepName;
-    return std::tuple{field("node", &R::node, "The step's number, from 0."), field("scan", &R::scan),
-                      field("workflow", &R::workflow), field("step", &R::step),
-                      field("variants", &R::variants, "That use it; absent if there is only one.").optional()};
+    return std::tuple{
+        field("node", &R::node, "Number of the step, from 0."), field("scan", &R::scan),
+        field("workflow", &R::workflow), field("step", &R::step),
+        field("variants", &R::variants, "Variants that use the step; absent if the workflow has only one.").optional()};
 }
 
 struct StepStartedEvent {
@@ -140,8 +141,9 @@ struct StepEndedEvent {
 };
 constexpr auto fields(const StepEndedEvent*) {
     using R = StepEndedEvent;
-    return std::tuple{field("variants", &R::variants, "That use it; absent if there is only one.").optional(),
-                      field("record", &R::record).flat()};
+    return std::tuple{
+        field("variants", &R::variants, "Variants that use the step; absent if the workflow has only one.").optional(),
+        field("record", &R::record).flat()};
 }
 
 struct OutputWrittenEvent {
@@ -159,7 +161,7 @@ struct CellEndedEvent {
 };
 constexpr auto fields(const CellEndedEvent*) {
     using R = CellEndedEvent;
-    return std::tuple{field("cell", &R::cell, "Its number, from 0."), field("record", &R::record).flat()};
+    return std::tuple{field("cell", &R::cell, "Number of the cell, from 0."), field("record", &R::record).flat()};
 }
 
 struct PassStartedEvent {
@@ -167,7 +169,9 @@ struct PassStartedEvent {
 };
 constexpr auto fields(const PassStartedEvent*) {
     using R = PassStartedEvent;
-    return std::tuple{field("pass", &R::pass, "Steps run again for their costs."), field("passes", &R::passes)};
+    return std::tuple{
+        field("pass", &R::pass, "Number of the pass, in which the steps run again to measure their costs."),
+        field("passes", &R::passes)};
 }
 
 struct RunEndedEvent {
@@ -176,9 +180,10 @@ struct RunEndedEvent {
 };
 constexpr auto fields(const RunEndedEvent*) {
     using R = RunEndedEvent;
-    return std::tuple{field("interrupted", &R::interrupted), field("ok", &R::ok, "Cells."),
-                      field("doubtful", &R::doubtful, "Cells."), field("failed", &R::failed, "Cells."),
-                      field("skipped", &R::skipped, "Cells.")};
+    return std::tuple{field("interrupted", &R::interrupted), field("ok", &R::ok, "Number of cells."),
+                      field("doubtful", &R::doubtful, "Number of cells."),
+                      field("failed", &R::failed, "Number of cells."),
+                      field("skipped", &R::skipped, "Number of cells.")};
 }
 
 }  // namespace scanmill

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The results of a run as plain records: steps, output files, cells, runs. The database, JSON and its schemas derive
-/// from their fields.
+/// The results of a run as plain records of steps, output files, cells and runs. The tables of the database, the JSON
+/// documents and their schemas derive from the fields of these records.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace scanmill {
 
-/// Names and values.
+/// Texts by name.
 using Texts = std::vector<std::pair<std::string, std::string>>;
 
 struct FailureRecord {
@@ -24,9 +24,10 @@ struct FailureRecord {
     explicit operator bool() const { return cause != Cause::none; }
 };
 constexpr auto fields(const FailureRecord*) {
-    return std::tuple{field("error", &FailureRecord::error, "The sentence, its frames and the hint.").optional(),
-                      field("cause", &FailureRecord::cause, "What kind of failure it is.").optional(),
-                      field("number", &FailureRecord::number, "The signal, or the exit code.").optional()};
+    return std::tuple{
+        field("error", &FailureRecord::error, "The error message with its context and its hint.").optional(),
+        field("cause", &FailureRecord::cause, "Kind of failure.").optional(),
+        field("number", &FailureRecord::number, "Number of the signal, or the exit code.").optional()};
 }
 
 struct StepRecord {
@@ -49,23 +50,25 @@ constexpr auto fields(const StepRecord*) {
     return std::tuple{
         field("node", &R::node, "Number of the step in the run, from 0."),
         field("workflow", &R::workflow),
-        field("step", &R::label, "Its label in the workflow."),
-        field("filter", &R::filter, "Absent for a step that reads a file.").optional(),
+        field("step", &R::label, "Label of the step in the workflow."),
+        field("filter", &R::filter, "Name of the filter; absent for a step that reads a file.").optional(),
         field("version", &R::filter_version, "Version of the filter.").optional(),
         field("build", &R::build, "Identifies the filter's module.").optional(),
-        field("file", &R::file, "The file that it reads.").optional(),
+        field("file", &R::file, "The file that the step reads.").optional(),
         field("scan", &R::scan),
-        field("key", &R::plan_key, "Equal for equal steps."),
+        field("key", &R::plan_key, "Plan key; equal for equal steps."),
         field("origin", &R::origin),
-        field("why", &R::why, "Why it ran and was not taken from the cache.").optional(),
+        field("why", &R::why, "Why the step ran instead of being taken from the cache.").optional(),
         field("outcome", &R::outcome),
         field("failure", &R::failure).flat(),
         field("effort", &R::effort).flat(),
-        field("attempts", &R::attempts, "How often it was started."),
-        field("authored", &R::authored, "Parameters as the workflow has them.").optional(),
+        field("attempts", &R::attempts, "Number of times that the step was started."),
+        field("authored", &R::authored, "Parameters as written in the workflow.").optional(),
         field("parameters", &R::resolved, "Parameters as the filter got them, in the scan's unit.").optional(),
         field("metrics", &R::metrics, "Numbers that the filter reported; null: not finite.").by_name().optional(),
-        field("properties", &R::properties, "Of its first output, or of the file that it read.").by_name().optional(),
+        field("properties", &R::properties, "Properties of the first output, or of the file that was read.")
+            .by_name()
+            .optional(),
         field("warnings", &R::warnings).optional()};
 }
 
@@ -88,20 +91,22 @@ constexpr auto fields(const OutputRecord*) {
         field("warnings", &R::warnings).optional(),
         field("sha256", &R::sha256, "Hash of the written file.").optional(),
         field("bytes", &R::bytes, "Size of the written file.").optional(),
-        field("moved-to", &R::moved_to, "Where the file of an earlier run is, whose cell failed now.").optional(),
-        field("not-moved", &R::not_moved, "Why the file of an earlier run is still there.").optional()};
+        field("moved-to", &R::moved_to, "New path of an earlier run's file, moved because the cell failed in this run.")
+            .optional(),
+        field("not-moved", &R::not_moved, "Why the file of an earlier run could not be moved.").optional()};
 }
 
-/// What one pass over a cell cost, all of whose steps ran in it.
+/// The costs of one pass over a cell. All steps of the cell ran in this pass.
 struct CostRecord {
     double seconds = 0, cpu_seconds = 0;
     u64 peak_memory = 0;
 };
 constexpr auto fields(const CostRecord*) {
     using R = CostRecord;
-    return std::tuple{field("seconds", &R::seconds, "Wall-clock time of its steps, added up."),
-                      field("cpu-seconds", &R::cpu_seconds, "Processor time of its steps, added up."),
-                      field("peak-memory", &R::peak_memory, "The largest of its steps; 0: unknown.").unit("bytes")};
+    return std::tuple{
+        field("seconds", &R::seconds, "Wall-clock time, added up over the cell's steps."),
+        field("cpu-seconds", &R::cpu_seconds, "Processor time, added up over the cell's steps."),
+        field("peak-memory", &R::peak_memory, "Largest resident size during a step; 0: unknown.").unit("bytes")};
 }
 
 struct CellRecord {
@@ -116,16 +121,17 @@ struct CellRecord {
 };
 constexpr auto fields(const CellRecord*) {
     using R = CellRecord;
-    return std::tuple{field("scan", &R::scan),
-                      field("workflow", &R::workflow),
-                      field("variant", &R::variant),
-                      field("outcome", &R::outcome),
-                      field("failure", &R::failure).flat(),
-                      field("seconds", &R::seconds, "Of its steps and outputs; shared steps count for each cell."),
-                      field("steps", &R::nodes, "Numbers of its steps."),
-                      field("outputs", &R::outputs),
-                      field("doubts", &R::doubts).optional(),
-                      field("costs", &R::costs, "One per pass in which all of its steps ran.").optional()};
+    return std::tuple{
+        field("scan", &R::scan),
+        field("workflow", &R::workflow),
+        field("variant", &R::variant),
+        field("outcome", &R::outcome),
+        field("failure", &R::failure).flat(),
+        field("seconds", &R::seconds, "Time of the cell's steps and outputs; shared steps count for each cell."),
+        field("steps", &R::nodes, "Numbers of the cell's steps."),
+        field("outputs", &R::outputs),
+        field("doubts", &R::doubts).optional(),
+        field("costs", &R::costs, "One entry per pass in which all steps of the cell ran.").optional()};
 }
 
 struct RunStart {
@@ -140,16 +146,16 @@ struct RunStart {
 constexpr auto fields(const RunStart*) {
     using R = RunStart;
     return std::tuple{field("workflow", &R::workflow, "Name of the workflow or the batch."),
-                      field("file", &R::file, "Its file."),
-                      field("arguments", &R::arguments, "The command."),
+                      field("file", &R::file, "File of the workflow or the batch."),
+                      field("arguments", &R::arguments, "Command line."),
                       field("seed", &R::seed),
-                      field("threads", &R::threads, "Inside a filter."),
+                      field("threads", &R::threads, "Threads inside a filter."),
                       field("jobs", &R::jobs, "Worker processes; 0: none."),
-                      field("version", &R::version, "Of Scanmill."),
+                      field("version", &R::version, "Version of Scanmill."),
                       field("machine", &R::machine),
                       field("libraries", &R::libraries),
                       field("gate", &R::gate, "Rules of the batch's gate by metric.").optional(),
-                      field("repeats", &R::repeats, "How often costs are measured.")};
+                      field("repeats", &R::repeats, "Number of times that costs are measured.")};
 }
 
 struct RunSummary {
@@ -164,7 +170,7 @@ constexpr auto fields(const RunSummary*) {
     return std::tuple{field("id", &R::id),
                       field("started", &R::started),
                       field("workflow", &R::workflow),
-                      field("outcome", &R::outcome, "null: it goes on, or was killed."),
+                      field("outcome", &R::outcome, "null: the run is not finished, or was killed."),
                       field("cells", &R::cells),
                       field("doubtful", &R::doubtful, "Doubtful cells."),
                       field("failed", &R::failed, "Failed cells."),
@@ -180,10 +186,10 @@ struct RunDetails {
     std::vector<StepRecord> steps;
 };
 
-// Records of a run that has its graph.
+// Making records from the graph and the reports of a run.
 
 FailureRecord record_of(const Failure& failure);
-/// `build`: identifies the filter's module.
+/// The record of a step. `build` identifies the filter's module.
 StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeReport& report, std::string build);
 OutputRecord output_record(const OutputReport& report);
 CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report);

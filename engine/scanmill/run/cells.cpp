@@ -14,7 +14,8 @@ std::string frame_of(const RunGraph& graph, std::size_t index) {
     const RunNode& node = graph.nodes[index];
     const PlannedStep* step = graph.step(node);
     if (!step) return fmt::format("while reading '{}'", node.leaf.file.string());
-    if (step->position.line == 0) return fmt::format("in step '{}'", step->label);  // it is in no file
+    if (step->position.line == 0)
+        return fmt::format("in step '{}'", step->label);  // the step does not come from a file
     return fmt::format("in step '{}' ({}:{}:{})", step->label,
                        step->file.empty() ? graph.plans[node.plan]->workflow.file : step->file, step->position.line,
                        step->position.column);
@@ -80,7 +81,7 @@ void Cells::end_remaining() {
 
 namespace {
 
-/// A file of an earlier run must not look like this run's result, which failed.
+/// Moves the file of an earlier run aside, so that it does not look like the result of this failed run.
 void set_aside(OutputReport& output) {
     try {
         if (move_aside(output.file)) output.moved_to = previous_of(output.file);
@@ -128,10 +129,10 @@ void Cells::end(std::size_t index) {
     on_end_(index);
 }
 
-/// The failure of a cell that is out of time. Its frame names the first node or output that is not done.
+/// The failure of a cell that is out of time. The error's frame names the first node or output that is not done.
 Failure Cells::out_of_time(std::size_t index) const {
     const RunCell& cell = graph_.cells[index];
-    Error error("time limit exceeded: the limit of a cell is {}, {:.3f} s were used and this is not done",
+    Error error("time limit exceeded: the limit of a cell is {}, {:.3f} s were used and this task is not done",
                 duration_text(limits_.cell_seconds), report_.cells[index].seconds);
     const auto node =
         std::ranges::find_if(cell.nodes, [&](std::size_t each) { return report_.nodes[each].outcome != Outcome::ok; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The cells of a run while it runs: the time that they have used, the tasks that they wait for, and their reports.
+/// Keeps account of the cells during a run: the time that they have used, the number of their unfinished tasks, and
+/// their reports.
 
 #include <filesystem>
 #include <functional>
@@ -23,15 +24,16 @@ struct FileToWrite {
     OutputReport report;
     Failure failure;
     double seconds = 0;
-    unsigned failures = 0;  ///< attempts that ended with their worker
+    unsigned failures = 0;  ///< number of attempts that ended by a crash or a limit
 };
 
-/// "in step 'x' (file:line:column)" or "while reading 'file'": the frame of the node's errors.
+/// The frame for errors of a node: "in step 'x' (file:line:column)" or "while reading 'file'".
 std::string frame_of(const RunGraph& graph, std::size_t node);
 
 class Cells {
 public:
-    /// Graph, limits and report must outlive it. `on_end` is called when a cell's report is complete.
+    /// `graph`, `limits` and `report` must outlive this object. `on_end` is called with the index of a cell when the
+    /// cell's report is complete.
     Cells(const RunGraph& graph, const Limits& limits, RunReport& report, std::function<void(std::size_t)> on_end);
 
     std::vector<FileToWrite>& files() { return files_; }
@@ -40,16 +42,18 @@ public:
 
     /// Whether any of these cells has time left.
     bool have_time(const std::vector<std::size_t>& cells) const;
-    /// Sets the time left of the cell that has the most, or the limit of a step if that is smaller.
+    /// Sets the time limit of a job to the time left for these cells: that of the cell with the most time left. The
+    /// limit of a step is used if it is smaller.
     void limit_time(const std::vector<std::size_t>& cells, Job& job) const;
+    /// Adds seconds to the used time of the cells.
     void charge(const std::vector<std::size_t>& cells, double seconds);
-    /// Counts the end of a task, which took `seconds`. Ends the cells that wait for no other.
+    /// Counts the end of a task, which took `seconds`, for these cells. Ends the cells that have no unfinished task.
     void task_ended(const std::vector<std::size_t>& cells, double seconds);
     void end_remaining();
 
 private:
     struct State {
-        std::vector<std::size_t> files;  ///< by the cell's outputs
+        std::vector<std::size_t> files;  ///< index into files() for each of the cell's outputs
         std::size_t tasks_left = 0;
         bool has_ended = false;
         bool is_out_of_time = false;

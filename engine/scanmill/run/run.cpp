@@ -15,7 +15,7 @@ namespace scanmill {
 
 namespace {
 
-/// The smaller limit; 0: none.
+/// The smaller of two limits, of which 0 means no limit.
 template <class Number>
 Number smaller_limit(Number a, Number b) {
     return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b);
@@ -23,9 +23,9 @@ Number smaller_limit(Number a, Number b) {
 
 /// Decides in which order nodes run and outputs are written, for any number of workers.
 ///
-/// An idle worker takes the first task, in the order of the graph, that can start. So scans are completed one after the
-/// other, and few values exist at a time. A value is removed after the last task that takes it. Values that were
-/// removed from the cache meanwhile are computed again.
+/// An idle worker takes the first task, in the order of the graph, that can start. Therefore scans are completed one
+/// after the other, and few values exist at a time. A value is removed after the last task that takes it. A value that
+/// another process removed from the cache is computed again.
 class Scheduler {
 public:
     Scheduler(FilterLibrary& library, const RunGraph& graph, Workers& workers, const RunSettings& settings,
@@ -71,21 +71,21 @@ public:
     }
 
 private:
-    /// Runs a node, or writes one of its outputs. Tasks are sorted as the nodes of the graph, writes after their node.
+    /// Runs a node, or writes one of its outputs. Tasks are sorted in the order of the nodes; a write follows its node.
     struct Task {
         std::size_t node = 0;
-        std::size_t write = 0;  ///< 0: the node itself; else 1 + index into Cells::files()
+        std::size_t write = 0;  ///< 0: run the node; otherwise 1 + index into Cells::files()
         auto operator<=>(const Task&) const = default;
     };
     enum class State { pending, running, done, failed, skipped };
     struct NodeState {
         State state = State::pending;
-        bool is_counted = false;  ///< its cells have counted its end
-        unsigned failures = 0;  ///< attempts that ended with their worker
-        double cost = 0;  ///< seconds to compute its values again; 0 if the cache has them
-        std::set<std::string> kept;  ///< ports whose values the cache has
-        std::map<std::string, std::size_t> uses;  ///< by port: unfinished tasks that take the value
-        std::vector<Task> waiting;  ///< tasks that start when it has ended
+        bool is_counted = false;  ///< Cells::task_ended() was called for the node
+        unsigned failures = 0;  ///< number of attempts that ended by a crash or a limit
+        double cost = 0;  ///< seconds to compute the node's values again; 0 if the cache has them
+        std::set<std::string> kept;  ///< output ports whose values the cache has
+        std::map<std::string, std::size_t> uses;  ///< number of unfinished tasks that take the value, by output port
+        std::vector<Task> waiting;  ///< tasks that wait for the end of the node
     };
     struct Running {
         Task task;
@@ -103,7 +103,7 @@ private:
         return task.write > 0 ? file_of(task).cells : cells_.of_node(task.node);
     }
 
-    // Tasks: what they take, and when they are ready.
+    // Values that tasks take, and readiness of tasks.
 
     void queue_all() {
         for (std::size_t node = 0; node < nodes_.size(); ++node) {
@@ -116,7 +116,7 @@ private:
         for (const Task& task : to_consider_) count_uses(task);
     }
 
-    /// Whether the result is in the cache and only its expectations have to be checked.
+    /// Whether the node's result is in the cache and only the step's expectations have to be checked.
     bool only_expects(std::size_t node) const {
         const PlannedStep* step = graph_.step(graph_.nodes[node]);
         return !prediction_[node].will_run && step && !step->expectations.empty();
@@ -138,7 +138,7 @@ private:
         for (const auto& [node, port] : sources(task)) ++nodes_[node].uses[port];
     }
 
-    /// One task less takes these values. They are removed after the last.
+    /// Counts that a task no longer takes these values. Removes a value that no unfinished task takes.
     void release(const std::vector<ValueSlot>& values) {
         for (const ValueSlot& value : values)
             if (--nodes_[value.first].uses[value.second] == 0) workers_.values().remove(value);
@@ -155,7 +155,7 @@ private:
     /// Makes the task ready, lets it wait for a node, or skips it.
     void consider(const Task& task) {
         if (!cells_.have_time(cells_of(task))) return skip(task);
-        // Inputs must be done also if the result is in the cache.
+        // Inputs must be done even if the result is in the cache.
         std::vector<std::size_t> prerequisites;
         if (task.write > 0)
             prerequisites.push_back(task.node);
@@ -184,7 +184,7 @@ private:
         finish_node(index, std::move(done));
     }
 
-    // Idle workers and ready tasks.
+    // Giving ready tasks to idle workers.
 
     void hand_out() {
         consider_all();
@@ -196,7 +196,7 @@ private:
         }
     }
 
-    /// The first task that can start.
+    /// Removes the first task that can start from ready_ and returns it; empty if no task can start.
     std::optional<Task> next_task() {
         for (auto next = ready_.begin(); next != ready_.end();) {
             const Task task = *next;
@@ -215,7 +215,8 @@ private:
         return std::nullopt;
     }
 
-    /// Tasks with equal keys give equal results: the second one waits and takes the result from the cache.
+    /// Tasks with equal keys give equal results. While one of them runs, the others wait; then they take its result
+    /// from the cache. Empty for tasks that do not share results.
     std::string computation_key(const Task& task) const {
         const RunNode& node = graph_.nodes[task.node];
         if (task.write > 0 || !node.step || !prediction_[task.node].will_run || !settings_.cache || node.is_uncacheable)
@@ -234,7 +235,7 @@ private:
         const std::size_t worker = idle_.back();
         idle_.pop_back();
         if (!workers_.start(worker, job(task))) {
-            ready_.insert(task);  // for another worker
+            ready_.insert(task);  // another worker will take it
             return;
         }
         running_[worker] = {task, computation_key(task)};
@@ -250,7 +251,7 @@ private:
         }
     }
 
-    // Jobs: all that a worker needs for a task.
+    // Making the job that tells a worker how to do a task.
 
     u64 memory_limit() const { return smaller_limit(settings_.limits.cell_memory, settings_.limits.step_memory); }
 
@@ -318,7 +319,8 @@ private:
             return job;
         }
         job.frame = frame_of(graph_, task.node);
-        const std::shared_ptr<const PlannedStep> step(graph_.plans[node.plan], graph_.step(node));  // part of its plan
+        const std::shared_ptr<const PlannedStep> step(graph_.plans[node.plan],
+                                                      graph_.step(node));  // shares ownership of the plan
         if (only_expects(task.node))
             job.work = ExpectWork{step, prediction_[task.node].cached->metrics, input_from(sources(task).front(), "")};
         else
@@ -336,10 +338,9 @@ private:
         --busy_;
         if (task.write == 0) nodes_[task.node].state = State::pending;
         if (report.was_read_whole)
-            report.node.effort.log.push_back(
-                "scanmill: the file could not be read piece by piece and was read as a whole");
+            report.node.effort.log.push_back("scanmill: the file could not be streamed and was loaded whole");
         if (!report.lost.empty()) return lost(task, report.lost);
-        if (report.outcome == Outcome::skipped) {  // cancelled
+        if (report.outcome == Outcome::skipped) {  // the job was cancelled
             report_.interrupted = is_stopped_ = true;
             return;
         }
@@ -373,7 +374,7 @@ private:
         const std::vector<ValueSlot> used = sources({index});
         if (predicted.will_run || !only_expects(index)) {
             report = std::move(done.node);
-        } else {  // only its expectations were checked
+        } else {  // only the expectations of the step were checked
             report = {};
             scanmill::adopt(*predicted.cached, graph_.step(node), report);
             report.attempts = done.node.attempts;
@@ -408,7 +409,7 @@ private:
         file.failure = std::move(done.node.failure);
         file.seconds = done.node.effort.seconds;
         file.report = std::move(done.output);
-        file.report.file = file.file;  // the report is empty if the worker ended
+        file.report.file = file.file;  // the report is empty if the worker process ended
         if (file.failure) file.report.outcome = Outcome::failed;
         notify(&RunObserver::output_written, graph_.cells[file.cells.front()], file.report);
         release({file.source});
@@ -424,7 +425,8 @@ private:
         end_task(task);
     }
 
-    /// Considers the tasks that wait for it, and counts it for its cells once, even if it runs again later.
+    /// Queues the tasks that wait for this task. Counts the task for its cells. A node that runs again later is counted
+    /// only once.
     void end_task(const Task& task) {
         if (task.write > 0) return cells_.task_ended(cells_of(task), file_of(task).seconds);
         NodeState& node = nodes_[task.node];
@@ -435,14 +437,15 @@ private:
         cells_.task_ended(cells_of(task), report_.nodes[task.node].effort.seconds);
     }
 
-    // Values that were removed from the cache.
+    // Computing values again that were removed from the cache.
 
     bool is_available(const ValueSlot& value) const {
         return nodes_[value.first].kept.contains(value.second) || workers_.values().contains(value) ||
-               !graph_.nodes[value.first].step;  // its file can be read again
+               !graph_.nodes[value.first].step;  // the node reads a file, which can be read again
     }
 
-    /// If a value that the task takes is gone, computes it again and lets the task wait.
+    /// If a value that the task takes was removed, queues its node to compute it again, and makes the task wait for it.
+    /// Returns whether the task has to wait.
     bool waits_for_lost(const Task& task) {
         for (const ValueSlot& source : sources(task)) {
             if (is_available(source)) continue;
@@ -486,11 +489,11 @@ private:
     Cells cells_;
     std::vector<NodeState> nodes_;
     std::vector<Running> running_;  // by worker
-    std::vector<std::size_t> idle_;  // workers; the last is started next: its process and its scan may be open
+    std::vector<std::size_t> idle_;  // workers; the last one is used next, because its process may have the scan open
     std::deque<Task> to_consider_;
     std::set<Task> ready_;
     std::size_t busy_ = 0;
-    bool is_stopped_ = false;  // starts nothing new
+    bool is_stopped_ = false;  // no further task starts
 };
 
 }  // namespace

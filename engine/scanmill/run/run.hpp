@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Runs a graph with one or more workers. Each node runs at most once, and not at all if the cache has its result.
-/// Values are dropped after their last use; outputs appear whole or not at all. A failed node fails the cells that need
-/// it; other cells go on.
+/// Runs a graph with one or more workers. A node whose result is in the cache does not run; every other node runs once.
+/// A value is dropped after its last use. An output file appears whole or not at all. If a node fails, the cells that
+/// need it fail; other cells go on.
 
 #include <functional>
 #include <string>
@@ -18,16 +18,16 @@
 namespace scanmill {
 
 struct RunSettings {
-    unsigned threads = 1;  ///< for every filter; results do not depend on it
+    unsigned threads = 1;  ///< threads for every filter; results do not depend on the number
     Limits limits;
-    bool fail_fast = false;  ///< starts nothing new once a cell has failed
+    bool fail_fast = false;  ///< after the first failure, no further task starts
     std::function<bool()> is_cancelled;
-    Cache* cache = nullptr;  ///< null: everything is computed, nothing is stored
+    Cache* cache = nullptr;  ///< null: every node runs and no result is stored
     std::vector<NodePrediction> prediction = {};  ///< from predict(); empty: run() calls it
 };
 
-/// Receives the events of a run. All calls come from the thread of run(), except progress and warnings of a worker in
-/// this process.
+/// Receives the events of a run. All calls come from the thread of run(). Only progress and warnings of InProcessWorker
+/// come from other threads.
 class RunObserver {
 public:
     virtual ~RunObserver() = default;
@@ -38,13 +38,14 @@ public:
     virtual void output_started(const RunCell&, const RunOutput&, std::size_t /*worker*/) {}
     virtual void output_written(const RunCell&, const OutputReport&) {}
     virtual void cell_ended(const RunCell&, const CellReport&) {}
-    /// The steps run once more, to measure what they cost; without further events.
+    /// Called before the steps run once more to measure their costs. That pass sends only time_passed().
     virtual void pass_started(unsigned /*pass*/, unsigned /*passes*/) {}
     /// Called several times a second.
     virtual void time_passed() {}
 };
 
-/// Every observer receives every event, in the order given. Outputs and reports do not depend on the number of workers.
+/// Runs the graph. Every observer receives every event; observers are called in the order given. Outputs and reports do
+/// not depend on the number of workers.
 RunReport run(FilterLibrary& library, const RunGraph& graph, Workers& workers, const RunSettings& settings,
               const std::vector<RunObserver*>& observers = {});
 

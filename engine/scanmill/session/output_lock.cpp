@@ -106,16 +106,17 @@ OutputLock::OutputLock(const fs::path& folder, const std::vector<std::string>& c
                                   .remedy(Remedy::choose_output_folder));
         }
         if (is_same_file(descriptor_, file_)) break;
-        ::close(descriptor_);  // its holder removed the file after it was opened
+        ::close(descriptor_);  // the holder of the lock removed the file after it was opened here
     }
     const std::string text = holder_text(command_line);
-    [[maybe_unused]] const bool ignored = ::ftruncate(descriptor_, 0) == 0 &&
-                                          ::pwrite(descriptor_, text.data(), text.size(), 0) > 0;  // for messages only
+    [[maybe_unused]] const bool ignored =
+        ::ftruncate(descriptor_, 0) == 0 &&
+        ::pwrite(descriptor_, text.data(), text.size(), 0) > 0;  // the text is only for messages
 }
 
 OutputLock::~OutputLock() {
     if (descriptor_ < 0) return;
-    ::unlink(file_.c_str());  // before the lock is released: no other process holds it
+    ::unlink(file_.c_str());  // remove the file while this process still holds the lock
     ::close(descriptor_);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// At most one run writes into an output folder at a time.
+/// Ensures that at most one run writes into an output folder at a time.
 ///
-/// A run locks the file `scanmill.lock` in the folder (an open file description lock), which the system releases when
-/// the process ends, however it ends. The file names the lock's holder, for messages, and is removed at the end.
+/// A run locks the file `scanmill.lock` in the folder with an open file description lock. The system releases the lock
+/// when the process ends, even by a crash. The file contains the name of the process for messages. It is removed at the
+/// end of the run.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace scanmill {
 
-/// Another run writes into the output folder.
+/// Thrown if another run writes into the output folder.
 class __attribute__((visibility("default"))) FolderInUse : public Error {
 public:
     using Error::Error;
@@ -24,15 +25,15 @@ public:
 
 class OutputLock {
 public:
-    /// Throws FolderInUse, which names the process that holds the lock and how long it has. If the file system has no
-    /// locks, warns, and holds none. Pre: the folder is writable.
+    /// Takes the lock. If another process holds it, throws FolderInUse, which names the process and how long it has
+    /// been writing. If the file system has no locks, warns and goes on without a lock. Pre: the folder is writable.
     OutputLock(const std::filesystem::path& folder, const std::vector<std::string>& command_line,
                const std::function<void(std::string)>& warn);
     ~OutputLock();
     OutputLock(const OutputLock&) = delete;
     OutputLock& operator=(const OutputLock&) = delete;
 
-    /// Whether a run writes into the folder now. Disturbs no run that begins.
+    /// Whether a run writes into the folder now. Does not take the lock, so a run can begin meanwhile.
     static bool is_held(const std::filesystem::path& folder);
 
 private:

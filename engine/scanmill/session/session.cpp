@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Checks before the first step that outputs can be written.
+/// Creates the folder if needed. Throws Error if outputs cannot be written to it.
 void require_writable(const fs::path& folder) {
     std::error_code trouble;
     fs::create_directories(folder, trouble);
@@ -42,7 +42,7 @@ void require_writable(const fs::path& folder) {
             .remedy(Remedy::choose_output_folder);
 }
 
-/// Removes incomplete files of an earlier run.
+/// Removes incomplete output files of a run that was killed.
 void remove_incomplete_outputs(const RunGraph& graph) {
     std::set<fs::path> folders;
     for (const RunCell& cell : graph.cells)
@@ -50,7 +50,7 @@ void remove_incomplete_outputs(const RunGraph& graph) {
     for (const fs::path& folder : folders) remove_abandoned_parts(folder);
 }
 
-/// The cells that are complete, without their outputs. Nodes that none of them needs do not run.
+/// The graph with only the complete cells, and without outputs. Nodes that no complete cell needs do not run.
 RunGraph graph_of_costs(const RunGraph& graph, const RunReport& report) {
     RunGraph again = graph;
     again.cells.clear();
@@ -62,7 +62,7 @@ RunGraph graph_of_costs(const RunGraph& graph, const RunReport& report) {
     return again;
 }
 
-/// Passes on no events but the time's.
+/// Passes only time_passed() on to the observers.
 struct Clock : RunObserver {
     explicit Clock(const std::vector<RunObserver*>& all) : observers(all) {}
     void time_passed() override {
@@ -93,7 +93,7 @@ Session::Session(SessionSettings settings, Cache* cache) : settings_(std::move(s
     try {
         processes_->start_early();
     } catch (const Error&) {
-        // Starting it is tried again, and a failure reported, when there is work.
+        // Ignored: the first job tries to start the process again and reports the failure.
     }
 }
 
@@ -128,7 +128,7 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
     const OutputLock lock(settings_.output_folder, settings_.command_line, warn);
     remove_incomplete_outputs(task.graph);
     if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
-        warn("limits of time are not enforced without worker processes");
+        warn("time limits are not enforced without worker processes");
     if (cache_ && task.gate.repeats > 1) warn("costs are not measured, because this run uses a cache");
     RunSettings run_settings;
     run_settings.threads =

@@ -81,7 +81,7 @@ constexpr auto fields(const Effort*) {
         field("cpu-seconds", &R::cpu_seconds, "Processor time of all threads."),
         field("peak-memory", &R::peak_memory, "Largest resident size of the process; 0: unknown.").unit("bytes"),
         field("threads", &R::threads, "Threads that the filter could use."),
-        field("log", &R::log, "The last lines on its standard output and error.").optional()};
+        field("log", &R::log, "Last lines that the process wrote to standard output and standard error.").optional()};
 }
 
 struct NodeReport {

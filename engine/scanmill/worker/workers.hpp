@@ -11,8 +11,8 @@
 
 namespace scanmill {
 
-/// Receives events of workers. All calls come from the thread that calls Workers::wait(), except progress and warnings
-/// of InProcessWorker. Those come from the threads of its filter, one call at a time.
+/// Receives events of workers. All calls come from within Workers::wait(), on its thread. Only the progress and
+/// warnings of InProcessWorker come from the threads of its filter, one call at a time.
 struct WorkerListener {
     std::function<void(std::size_t worker, double fraction)> on_progress;
     std::function<void(std::size_t worker, std::string_view text)> on_warning;

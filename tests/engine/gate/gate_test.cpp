@@ -98,7 +98,7 @@ TEST(GateTolerance, AnotherDimension_IsRefused) {
     EXPECT_THAT(refusal("+1 mm", Unit::count), HasSubstr("'1 mm' is not a number; expected +1 %, +2 or exact"));
     EXPECT_THAT(refusal("+1 mm", Unit::ratio), HasSubstr("is not a number"));
     EXPECT_THAT(refusal("+1 mm", Unit::seconds), HasSubstr("is not a time"));
-    EXPECT_EQ(refusal("1", Unit::boolean), "'1' is not for yes or no; expected exact");
+    EXPECT_EQ(refusal("1", Unit::boolean), "'1' cannot limit a metric that is true or false; expected exact");
     EXPECT_THAT(refusal("+1 %", Unit::boolean), EndsWith("expected exact"));
 }
 
@@ -126,9 +126,10 @@ TEST(GateTolerance, LengthsThatCannotBeConverted_AreRefused) {
                 StartsWith("1 mm2 needs a scan of known unit"));
     EXPECT_THAT(sentence_of([] { of_length("0.1 %diag", LengthUnit::millimetre, unknown); }),
                 HasSubstr("diagonal is nan"));
-    EXPECT_THAT(sentence_of([] { of_length("3 spacing"); }), HasSubstr("is not fixed"));
+    EXPECT_THAT(sentence_of([] { of_length("3 spacing"); }),
+                HasSubstr("the point spacing of the accepted run is not recorded"));
     EXPECT_THAT(sentence_of([] { parse_tolerance("3 spacing2", Unit::area, LengthUnit::metre, 1); }),
-                HasSubstr("is not fixed"));
+                HasSubstr("the point spacing of the accepted run is not recorded"));
 }
 
 TEST(GateRuleCheck, Direction_MustBeThatOfRegressions) {
@@ -155,7 +156,7 @@ TEST(GateRuleCheck, Costs_TakeAShareThatLeavesRoom) {
         EXPECT_THAT(sentence_of([&] { parse_cost_tolerance(text); }),
                     HasSubstr("is not a limit of a cost; expected a share of the accepted costs, as +20 %"))
             << text;
-    EXPECT_THAT(sentence_of([] { parse_cost_tolerance("+0 %"); }), HasSubstr("leaves no room for noise"));
+    EXPECT_THAT(sentence_of([] { parse_cost_tolerance("+0 %"); }), HasSubstr("does not allow for noise"));
     EXPECT_THAT(sentence_of([] { parse_cost_tolerance("+x %"); }), HasSubstr("is not a ratio"));
 }
 

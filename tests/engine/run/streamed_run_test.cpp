@@ -53,7 +53,7 @@ TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
     prepare("  - test-stream: {length: 1 %diag, log: " + log() + "}\n", {nan}, "",
             "{scan: {kind: points, invalid: drop}}");
     const std::vector<std::string> log = run_graph().nodes[0].effort.log;
-    EXPECT_THAT(log, ElementsAre(HasSubstr("read as a whole")));
+    EXPECT_THAT(log, ElementsAre(HasSubstr("could not be streamed and was loaded whole")));
     EXPECT_THAT(run_logging(scan("a.xyz")).nodes[0].effort.log, testing::IsEmpty());
     EXPECT_THAT(logged(), testing::MatchesRegex("whole .*\nstream .*\n"));
 }

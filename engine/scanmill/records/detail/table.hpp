@@ -2,10 +2,11 @@
 #pragma once
 /// SQLite tables of described structs (record/fields.hpp).
 ///
-/// Numbers, texts, enumerations and texts by name are columns; hyphens in their names become underscores. A list has a
-/// table of its own, TABLE_FIELD, whose rows name their owner's row in the column `parent`: lists of structs and of
-/// values, and metrics, whose unit of lengths is the column FIELD_unit of the owner. Every row has an `id`; rows of one
-/// parent keep their order. NaN is stored as NULL.
+/// A number, text, enumeration or map of texts is a column. Hyphens in the name of a field become underscores. A list
+/// of structs or values has a table of its own, TABLE_FIELD; the column `parent` of its rows is the `id` of the owner's
+/// row. Metrics are a list, too; the unit of their lengths is the column FIELD_unit of the owner.
+///
+/// Every row has an `id`. Rows of one parent keep their order. NaN is stored as NULL.
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
@@ -26,7 +27,7 @@ namespace scanmill::tables {
 
 using RowId = std::int64_t;
 
-// Values of columns.
+// Conversion between values and columns.
 
 template <class T>
 struct Column;
@@ -83,7 +84,7 @@ struct Column<std::optional<T>> {
         if (!column.isNull()) Column<T>::read(column, value.emplace());
     }
 };
-/// As a JSON object.
+/// Texts by name are stored as the text of a JSON object.
 template <>
 struct Column<std::vector<std::pair<std::string, std::string>>> {
     using Texts = std::vector<std::pair<std::string, std::string>>;
@@ -101,7 +102,7 @@ concept IsColumn = requires(const SQLite::Column& column, T& value) { Column<T>:
 template <class T>
 inline constexpr bool is_metrics = std::same_as<T, Metrics>;
 
-/// A list of values as rows.
+/// A row for an item of a list of plain values.
 template <class T>
 struct Item {
     T value;
@@ -111,7 +112,7 @@ constexpr auto fields(const Item<T>*) {
     return std::tuple{field("value", &Item<T>::value)};
 }
 
-/// Prepared statements by their text.
+/// Keeps prepared statements, found by their text.
 class Statements {
 public:
     explicit Statements(SQLite::Database& database) : database_(database) {}
@@ -119,7 +120,7 @@ public:
         const auto found = prepared_.find(sql);
         SQLite::Statement& statement =
             found != prepared_.end() ? found->second : prepared_.try_emplace(sql, database_, sql).first->second;
-        statement.tryReset();  // also after a failure
+        statement.tryReset();  // needed after a failure, too
         return statement;
     }
     SQLite::Database& database() { return database_; }
@@ -134,7 +135,8 @@ inline std::string column_name(std::string name) {
     return name;
 }
 
-/// Calls on_column(name, field's column type tag, getter) … for flat structs in place.
+/// Calls on_column(name, member) for every field that is a column, and on_list(name, member) for every list. Fields
+/// that are structs are visited as if their fields were fields of `object`.
 template <class T, class OnColumn, class OnList>
 void visit(auto& object, OnColumn&& on_column, OnList&& on_list) {
     for_each_field<T>([&](const auto& field) {
@@ -160,11 +162,11 @@ constexpr auto row_type() {
     else
         return std::type_identity<Item<T>>();
 }
-/// The struct that a list's rows hold.
+/// The struct that holds a row of the list's table.
 template <class List>
 using RowOf = typename decltype(row_type<typename List::value_type>())::type;
 
-/// The names of the columns, each after `before`.
+/// The quoted names of the columns, with `before` in front of each.
 template <class T>
 std::string column_list(const std::string& before) {
     std::string names;
@@ -175,7 +177,8 @@ std::string column_list(const std::string& before) {
     return names;
 }
 
-/// Statements that create the table, its indices and those of its lists. `parent`: the table of the owner.
+/// SQL statements that create the table, its index, and the tables of its lists. `parent` is the table of the owner;
+/// empty: no owner.
 template <class T>
 std::string creation(const std::string& table, const std::string& parent) {
     std::string columns, lists;
@@ -194,7 +197,7 @@ std::string creation(const std::string& table, const std::string& parent) {
     return "CREATE TABLE " + table + " (id INTEGER PRIMARY KEY" + owner + columns + ");\n" + index + lists;
 }
 
-/// Inserts a row and its lists; returns its id.
+/// Inserts a row and the rows of its lists. Returns the row's id.
 template <class T>
 RowId insert(Statements& statements, const std::string& table, const T& object, std::optional<RowId> parent = {}) {
     static const std::string columns = column_list<T>(", ");
@@ -226,7 +229,7 @@ RowId insert(Statements& statements, const std::string& table, const T& object, 
     return id;
 }
 
-/// Reads the columns of T from column `first` on.
+/// Reads the columns of T, which begin at column `first`.
 template <class T>
 void read_columns(SQLite::Statement& row, int first, T& object) {
     visit<T>(
@@ -237,19 +240,19 @@ void read_columns(SQLite::Statement& row, int first, T& object) {
         [](const std::string&, auto&) {});
 }
 
-/// Rows with their lists, and the id of each.
+/// Rows of a table with their lists.
 template <class T>
 struct Rows {
     std::vector<T> objects;
     std::vector<RowId> ids;
-    std::vector<std::size_t> owners;  ///< indices into the ids that were asked for
+    std::vector<std::size_t> owners;  ///< index into the `parents` of read_rows(), for each row
 };
 
 template <class T>
 void read_lists(SQLite::Database& database, const std::string& table, std::vector<T*> objects,
                 const std::vector<RowId>& ids);
 
-/// The rows of these parents, given by ascending ids, parent by parent.
+/// The rows of these parents, parent by parent. Pre: `parents` are ascending ids.
 template <class T>
 Rows<T> read_rows(SQLite::Database& database, const std::string& table, const std::vector<RowId>& parents) {
     Rows<T> rows;
@@ -273,7 +276,7 @@ Rows<T> read_rows(SQLite::Database& database, const std::string& table, const st
     return rows;
 }
 
-/// The row with this id. Nothing: there is none.
+/// The row with this id; empty if it does not exist.
 template <class T>
 std::optional<T> read_row(SQLite::Database& database, const std::string& table, RowId id) {
     SQLite::Statement query(database, "SELECT id" + column_list<T>(", ") + " FROM " + table + " WHERE id = ?");
