@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The scan's name from the folder of the batch file.
+/// The scan's path relative to the folder of the batch file.
 std::string scan_in_batch(const std::string& scan, const std::string& file) {
     const fs::path folder = fs::path(file).lexically_normal().parent_path(), path = fs::path(scan).lexically_normal();
     if (scan.empty() || folder.empty() || folder == ".") return scan;
@@ -39,7 +39,8 @@ RunFacts facts_of(const RunDetails& run) {
             run.start.jobs,    run.summary.seconds};
 }
 
-/// Identifies a cell in all runs of its batch; the last number tells apart cells that are equal otherwise.
+/// Identifies a cell in all runs of its batch by workflow, scan and variant. The number distinguishes cells with the
+/// same names.
 using CellKey = std::tuple<std::string, std::string, std::string, std::size_t>;
 
 /// The cells of a run by their key.
@@ -47,7 +48,7 @@ class CellTable {
 public:
     explicit CellTable(const RunDetails& run) {
         for (const CellRecord& cell : run.cells) {
-            // The cell of a list of scans, or of none, has the name of its workflow.
+            // If the workflow takes a list of scans, or no scan, the cell's scan is the name of the workflow.
             const std::string scan = cell.scan == cell.workflow ? cell.scan : scan_in_batch(cell.scan, run.start.file);
             const std::size_t again = repeats_[{cell.workflow, scan, cell.variant}]++;
             keys_.emplace_back(cell.workflow, scan, cell.variant, again);
@@ -67,7 +68,8 @@ private:
     std::map<std::tuple<std::string, std::string, std::string>, std::size_t> repeats_;
 };
 
-/// The cells are recorded as they end, but their nodes have the order of the plan: scan by scan, in each the variants.
+/// Indices of the cells in the order of the plan: scan by scan, and variant by variant within a scan. Cells are
+/// recorded in the order in which they end, but their nodes are numbered in the order of the plan.
 std::vector<std::size_t> in_plan_order(const std::vector<CellRecord>& cells) {
     const auto place_of = [&](std::size_t cell) {
         const std::vector<std::size_t>& nodes = cells[cell].nodes;
@@ -84,12 +86,13 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 std::string shown(double value, Unit unit, LengthUnit lengths) { return display(Metric{"", value, unit}, lengths); }
 
-/// The effect of a change under its rule. Pre: the values differ.
+/// The effect of a change under the tolerance of its rule. Pre: the values differ.
 Effect effect_of(const Tolerance& tolerance, double accepted, double found) {
     const double rise = found - accepted;
     double limit = tolerance.is_relative ? tolerance.amount * std::abs(accepted) : tolerance.amount;
     if (!std::isfinite(limit)) limit = 0;
-    // A value on the limit keeps its rule; only a limit needs arithmetic that rounds.
+    // A value exactly on the limit is allowed, so rounding errors are added to the limit. `exact` has no rounding
+    // errors.
     if (limit > 0 && std::isfinite(rise)) limit += 1e-12 * std::max(std::abs(accepted), std::abs(found));
     if (std::abs(rise) <= limit) return Effect::listed;
     return (rise > 0 ? tolerance.may_rise : tolerance.may_fall) ? Effect::improvement : Effect::regression;
@@ -102,7 +105,7 @@ double cost_of(const CostRecord& pass, std::string_view cost) {
 }
 constexpr std::array<std::string_view, 3> all_costs{"seconds", "cpu-seconds", "memory"};
 
-/// The known costs, one per pass.
+/// The last known costs, one per pass, at most most_ranked.
 std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_view cost) {
     std::vector<double> costs;
     for (const CostRecord& pass : passes)
@@ -111,7 +114,7 @@ std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_
     return costs;
 }
 
-/// Possible causes of differences between two runs of a cell: files, filters, parameters.
+/// Possible causes of differences between two runs of a cell: changed files, filters and parameters.
 std::vector<std::string> causes_of(const CellRecord& cell, const StepsByNode& steps, const CellRecord& before,
                                    const StepsByNode& steps_before) {
     using Occurrence = std::pair<std::string, std::size_t>;  // label and its number in the cell
@@ -152,7 +155,7 @@ std::vector<std::string> causes_of(const CellRecord& cell, const StepsByNode& st
     return causes;
 }
 
-/// "decimate 2 → 3" for filters whose version differs, "decimate 2: another build" where only the build does.
+/// "decimate 2 → 3" for a filter whose version differs; "decimate 2: another build" if only its build differs.
 std::vector<std::string> changed_filters(const RunDetails& run, const RunDetails& before) {
     const auto versions = [](const RunDetails& details) {
         std::map<std::string, std::pair<int, std::string>> found;
@@ -186,18 +189,18 @@ public:
             if (!output.moved_to.empty()) result_.moved.push_back(fs::path(output.moved_to).filename().string());
     }
 
-    /// `accepted`: null if the accepted run does not have the cell.
+    /// The verdict. `accepted` is null if the accepted run does not have the cell. `past` are costs of earlier passes.
     CellComparison judged(const CellRecord* accepted, const StepsByNode& accepted_steps,
                           const std::vector<CostRecord>& past) {
         if (cell_.outcome == Outcome::failed) {
             result_.reasons.push_back(failure_text(cell_.failure));
             if (accepted && accepted->outcome == Outcome::failed)
-                result_.reasons.emplace_back("it failed in the accepted run, too");
+                result_.reasons.emplace_back("the cell failed in the accepted run, too");
             result_.verdict = Verdict::failed;
             return std::move(result_);
         }
         if (cell_.outcome == Outcome::skipped) {
-            result_.reasons.emplace_back("it did not run");
+            result_.reasons.emplace_back("the cell did not run");
             result_.verdict = Verdict::missing;
             return std::move(result_);
         }
@@ -224,11 +227,12 @@ public:
 private:
     static std::string failure_text(const FailureRecord& failure) {
         std::string text = first_line(failure.error);
-        if (text.empty()) text = "it failed";
+        if (text.empty()) text = "the cell failed";
         return text;
     }
 
-    /// The rule with amounts in the unit of this value; nothing if it cannot be applied, which is a reason to fail.
+    /// The tolerance of a rule in the unit of this value. If the rule cannot be applied, adds a reason to inapplicable_
+    /// and returns nothing.
     std::optional<Tolerance> tolerance_for(const GateRule& rule, const CellValue& value) {
         try {
             return parse_tolerance(rule.text, value.metric.unit, value.lengths, value.diagonal);
@@ -291,7 +295,7 @@ private:
         return std::isnan(share) ? infinite : share;
     }
 
-    /// The change, in the unit of the new value.
+    /// The change from `was` to `is`, in the unit of `is`. One of the two may be null.
     static MetricChange change_of(const CellValue* was, const CellValue* is) {
         const CellValue& either = is ? *is : *was;
         MetricChange change;
@@ -308,8 +312,8 @@ private:
         return change;
     }
 
-    /// Differences that no rule is for. A value that several sources repeat, as the properties of a step's result and
-    /// of its output, is listed once.
+    /// Lists differences to which no rule applies. Several sources may repeat a value, for example a step and its
+    /// output; it is listed once.
     void list_ungated(const std::vector<CellValue>& before) {
         const auto list = [&](const CellValue* was, const CellValue* is) {
             if (judged_.contains((is ? is : was)->full_name())) return;
@@ -343,7 +347,7 @@ private:
             lacks_hash = lacks_hash || (is_written(is) && is.sha256.empty()) || (was_written && was->sha256.empty());
             const std::string before = was_written ? was->sha256 : "", now = is_written(is) ? is.sha256 : "";
             if (was_written == is_written(is) && (before == now || before.empty() || now.empty())) continue;
-            // A file that only this run has is listed and does not trip, as a metric is.
+            // A file that only this run has is not a regression.
             const Effect effect = is_gated && was_written ? Effect::regression : Effect::listed;
             result_.outputs.push_back({name(is), before, now, effect});
         }
@@ -351,7 +355,8 @@ private:
             if (is_written(was) && !find(cell_, name(was)))
                 result_.outputs.push_back({name(was), was.sha256, "", is_gated ? Effect::regression : Effect::listed});
         if (is_gated && lacks_hash)
-            inapplicable_.emplace_back("the rule outputs: exact cannot be applied: a run has no hashes of its files");
+            inapplicable_.emplace_back(
+                "the rule outputs: exact cannot be applied: one of the runs recorded no hashes of its files");
     }
 
     void compare_costs(const std::vector<CostRecord>& past) {
@@ -381,7 +386,7 @@ private:
         }
     }
 
-    /// True also if the processor time is not known.
+    /// Whether the processor time rose by more than the tolerance. Also true if the processor time is unknown.
     bool used_more_processor(const std::vector<CostRecord>& past, double tolerance) const {
         const std::vector<double> before = costs_of(past, "cpu-seconds"), now = costs_of(cell_.costs, "cpu-seconds");
         return before.empty() || now.empty() || all_rise(before, now, tolerance);
@@ -411,7 +416,7 @@ private:
             result_.reasons = std::move(improvements_);
         } else if (accepted && !is_comparable) {
             result_.verdict = Verdict::improved;
-            result_.reasons.push_back(fmt::format("it {} in the accepted run",
+            result_.reasons.push_back(fmt::format("the cell {} in the accepted run",
                                                   accepted->outcome == Outcome::failed ? "failed" : "did not run"));
         } else {
             result_.verdict = accepted ? Verdict::passed : Verdict::is_new;
@@ -432,14 +437,14 @@ private:
 
     static std::string reason(const CostChange& change) {
         const std::string chance = change.probability ? fmt::format(", p = {:.2g}", *change.probability) : "";
-        return fmt::format("{} is {:.2f} times that of {} earlier passes ({}{})", change.cost,
+        return fmt::format("{} is {:.2f} times the median of {} earlier passes ({}{})", change.cost,
                            change.now / change.before, change.passes_before, change.rule, chance);
     }
 
     const Gate& gate_;
     const CellRecord& cell_;
     CellComparison result_;
-    std::set<std::string> judged_;  // full names of values with a rule
+    std::set<std::string> judged_;  // full names of the values to which a rule applies
     std::vector<std::string> inapplicable_, regressions_, improvements_;
 };
 
@@ -450,7 +455,7 @@ Verdict verdict_of(const Comparison& comparison) {
     return comparison.count(Verdict::improved) > 0 ? Verdict::improved : Verdict::passed;
 }
 
-/// Pools of past costs by cell. Scans are named by their paths from the batch's folder.
+/// The costs of earlier passes by cell. Scans are named by their paths relative to the batch's folder.
 class Pools {
 public:
     Pools(const std::vector<PastCosts>& all, const std::string& file) {
@@ -476,12 +481,12 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
     const bool has_costs = std::ranges::any_of(run.cells, [](const CellRecord& cell) { return !cell.costs.empty(); });
     if (gates_costs && !has_costs)
         comparison.notes.emplace_back(
-            "no costs were judged: no cell ran all of its steps; run without the cache to judge them");
+            "costs were not compared, because no cell ran all of its steps; run without the cache to compare them");
     if (!baseline) return;
     const RunStart &now = run.start, &then = baseline->run.start;
     if (now.machine != then.machine)
         comparison.notes.push_back(
-            fmt::format("the machine changed: costs have a new baseline; it was {}", then.machine));
+            fmt::format("the machine changed, so costs have a new baseline; the machine was {}", then.machine));
     else if (now.threads != then.threads || now.jobs != then.jobs)
         comparison.notes.push_back(fmt::format("costs have a new baseline: threads {} → {}, jobs {} → {}", then.threads,
                                                now.threads, then.jobs, now.jobs));
@@ -489,7 +494,7 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
         comparison.notes.push_back(fmt::format("Scanmill {} → {}", then.version, now.version));
     if (now.seed != then.seed) comparison.notes.push_back(fmt::format("the seed changed {} → {}", then.seed, now.seed));
     if (then.gate != now.gate || then.repeats != now.repeats)
-        comparison.notes.emplace_back("the gate is not that of the accepted run");
+        comparison.notes.emplace_back("the gate differs from the gate of the accepted run");
 }
 
 }  // namespace
@@ -530,7 +535,7 @@ Comparison compare(const RunDetails& run, const Baseline* baseline, const Comman
         missing.variant = accepted_run.cells[i].variant;
         missing.scan = std::get<1>(accepted_cells.key(i));
         missing.verdict = Verdict::missing;
-        missing.reasons.emplace_back("the run does not have it; the accepted run has");
+        missing.reasons.emplace_back("the cell is absent; the accepted run has it");
     }
     for (const CellComparison& cell : comparison.cells) ++comparison.counts[static_cast<std::size_t>(cell.verdict)];
     comparison.verdict = verdict_of(comparison);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // H. B. Mann, D. R. Whitney: On a test of whether one of two random variables is stochastically larger than the other.
-// Annals of Mathematical Statistics 18 (1947); with ties by mid-ranks, conditional on the ties found.
+// Annals of Mathematical Statistics 18 (1947). Ties get mid-ranks; probabilities are conditional on the ties found.
 #include "scanmill/compare/costs.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace scanmill {
 
 namespace {
 
-/// Twice the mid-rank of every value of both sides, those of `first` first; twice, so that ranks are whole numbers.
+/// Twice the mid-rank of every value, first of `first`, then of `second`. The factor 2 makes the ranks whole numbers.
 std::vector<std::size_t> doubled_ranks(std::span<const double> first, std::span<const double> second) {
     std::vector<double> values(first.begin(), first.end());
     values.insert(values.end(), second.begin(), second.end());
@@ -20,13 +20,13 @@ std::vector<std::size_t> doubled_ranks(std::span<const double> first, std::span<
     std::vector<std::size_t> ranks;
     for (const double value : values) {
         const auto [low, high] = std::ranges::equal_range(sorted, value);
-        // The ranks of equal values are low + 1 to high; their mean is half of this sum.
+        // The ranks of equal values are low + 1 to high. Their mean is half of the sum of these two.
         ranks.push_back(static_cast<std::size_t>((low - sorted.begin()) + 1 + (high - sorted.begin())));
     }
     return ranks;
 }
 
-/// counts[s]: how many choices of `chosen` of the ranks have the sum s.
+/// counts[s] is the number of ways to choose `chosen` of the ranks with the sum s.
 std::vector<std::uint64_t> choices_by_sum(const std::vector<std::size_t>& ranks, std::size_t chosen) {
     std::vector<std::size_t> sorted = ranks;
     std::ranges::sort(sorted, std::greater<>());
@@ -50,7 +50,7 @@ std::uint64_t binomial(std::uint64_t all, std::uint64_t chosen) {
 
 ExactProbability rank_test(std::span<const double> larger, std::span<const double> smaller) {
     assert(!larger.empty() && larger.size() <= most_ranked && !smaller.empty() && smaller.size() <= most_ranked);
-    // The smaller side is counted: that larger's ranks are high means that the others' are low.
+    // Counts the side with fewer values. High ranks of `larger` mean low ranks of `smaller`.
     const bool counts_larger = larger.size() <= smaller.size();
     const std::span<const double> counted = counts_larger ? larger : smaller;
     const std::vector<std::size_t> ranks = doubled_ranks(counted, counts_larger ? smaller : larger);
@@ -73,7 +73,8 @@ double median(std::span<const double> values) {
 
 namespace {
 
-/// Whether ranks bear out that `high` is above `low` by this share, or the share alone, where ranks say nothing.
+/// Whether the difference of `high` and `low` by this share counts, by the rules of judge_costs(). Sets `probability`
+/// if it uses the rank test.
 bool is_borne_out(double share, std::span<const double> high, std::span<const double> low, bool is_ranked,
                   double tolerance, double limit, std::optional<double>& probability) {
     if (!(share > limit)) return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// RFC 4180: fields with a comma, a quote or a line end are quoted, quotes doubled; records end with CR LF.
+// Writes CSV by RFC 4180. Fields that contain a comma, a quote or a line end are quoted, and quotes in them are
+// doubled. Records end with CR LF.
 #include <array>
 
 #include "scanmill/base/text.hpp"
@@ -58,7 +59,7 @@ std::string csv_rows(const RunDetails& run) {
         for (const std::string cost : {"seconds", "cpu-seconds", "memory"})
             if (const auto value = number_of(cell, cost))
                 add("", cost, number_text(value->metric.value), cost == "memory" ? "bytes" : "s");
-        if (text.size() == begin) add("", "", "", "");  // no cell is dropped
+        if (text.size() == begin) add("", "", "", "");  // a cell without numbers gets one row, too
     }
     return text;
 }

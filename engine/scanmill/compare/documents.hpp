@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What `scanmill report --json` and the verdict of a batch consist of.
+/// The documents of `scanmill report --json` and of the verdict of a batch.
 
 #include <map>
 
@@ -9,7 +9,7 @@
 
 namespace scanmill {
 
-/// Numbers by source and name.
+/// Values as a JSON object: numbers by CellValue::full_name().
 template <>
 struct JsonForm<std::vector<CellValue>> {
     static Json write(const std::vector<CellValue>& values) {
@@ -26,9 +26,11 @@ struct AcceptedRun {
 };
 constexpr auto fields(const AcceptedRun*) {
     using R = AcceptedRun;
-    return std::tuple{field("run", &R::run).flat(), field("folder", &R::folder, "null: the run's own.").nullable(),
-                      field("who", &R::who).nullable(), field("why", &R::why).nullable(),
-                      field("at", &R::at, "null: it was not accepted.").nullable()};
+    return std::tuple{
+        field("run", &R::run).flat(),
+        field("folder", &R::folder, "Output folder of the accepted run; null: the folder of this run.").nullable(),
+        field("who", &R::who).nullable(), field("why", &R::why).nullable(),
+        field("at", &R::at, "Time of the acceptance; null: the run was not accepted.").nullable()};
 }
 
 struct GateDocument {
@@ -37,10 +39,11 @@ struct GateDocument {
 };
 constexpr auto fields(const GateDocument*) {
     using R = GateDocument;
-    return std::tuple{field("rules", &R::rules, "By metric."),
-                      field("repeats", &R::repeats, "How often a run measures its costs.")};
+    return std::tuple{field("rules", &R::rules, "Rules by metric."),
+                      field("repeats", &R::repeats, "Number of times that a run measures its costs.")};
 }
 
+/// The position of a change in a ReportDocument: index of the cell, and index into one of the cell's lists.
 struct ChangePlace {
     std::size_t cell = 0;
     std::optional<std::size_t> metric, output, cost;
@@ -65,19 +68,19 @@ struct ReportDocument {
 };
 constexpr auto fields(const ReportDocument*) {
     using R = ReportDocument;
-    return std::tuple{
-        field("batch", &R::batch),
-        field("file", &R::file),
-        field("verdict", &R::verdict),
-        field("tripped", &R::tripped, "A cell regressed or is missing."),
-        field("run", &R::run),
-        field("accepted", &R::accepted, "null: no run was accepted."),
-        field("gate", &R::gate),
-        field("counts", &R::counts, "Cells by verdict."),
-        field("filters", &R::filters, "Changed versions."),
-        field("notes", &R::notes),
-        field("cells", &R::cells),
-        field("changes", &R::changes, "Indices into the cells and their lists: the most important change first.")};
+    return std::tuple{field("batch", &R::batch),
+                      field("file", &R::file),
+                      field("verdict", &R::verdict),
+                      field("tripped", &R::tripped, "A cell regressed or is missing."),
+                      field("run", &R::run),
+                      field("accepted", &R::accepted, "null: no run was accepted."),
+                      field("gate", &R::gate),
+                      field("counts", &R::counts, "Number of cells by verdict."),
+                      field("filters", &R::filters, "Filters whose version or build changed."),
+                      field("notes", &R::notes),
+                      field("cells", &R::cells),
+                      field("changes", &R::changes,
+                            "The most important change first; indices into `cells` and into the lists of the cell.")};
 }
 
 struct JudgedCell {
@@ -91,7 +94,7 @@ constexpr auto fields(const JudgedCell*) {
                       field("verdict", &R::verdict), field("reasons", &R::reasons)};
 }
 
-/// The verdict, the counts and the cells that did not pass.
+/// The event with the verdict of a batch, the counts, and the cells that are neither passed nor new.
 struct VerdictEvent {
     Verdict verdict = Verdict::passed;
     bool tripped = false;

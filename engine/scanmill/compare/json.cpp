@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A comparison as JSON.
+// Writes a comparison as JSON.
 #include "scanmill/compare/documents.hpp"
 #include "scanmill/compare/formats.hpp"
 
@@ -24,7 +24,7 @@ std::optional<AcceptedRun> accepted_of(const Comparison& comparison) {
     return accepted;
 }
 
-/// Where the cell, and the change in it, are in the report.
+/// The indices of the cell and of the change in the report.
 ChangePlace place_of(const RankedChange& change, const Comparison& comparison) {
     const auto index = [](const auto* item, const auto& list) -> std::optional<std::size_t> {
         if (!item) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A comparison as JUnit XML. Ant's schema is the strictest: elements and attributes are in its order, testsuites has no
-// attributes, and a time stamp has no zone.
+// Writes a comparison as JUnit XML. Ant's schema is the strictest, so elements and attributes are in its order,
+// `testsuites` has no attributes, and a time stamp has no time zone.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,7 +15,8 @@ namespace scanmill {
 
 namespace {
 
-/// Text for elements and attributes. XML 1.0 has no control characters, escaped or not: they are written as "\x1b".
+/// Escapes text for elements and attributes. XML 1.0 does not allow control characters, not even escaped, so they are
+/// written as "\x1b".
 std::string escaped(std::string_view text) {
     std::string xml;
     while (!text.empty()) {

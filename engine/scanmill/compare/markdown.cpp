@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A comparison in GitHub's Markdown.
+// Writes a comparison in GitHub's Markdown.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t most_rows = 20;
 
-/// Text without any meaning in Markdown, on one line: no markup, no tag, no mention of a user or an issue, no cell's
-/// end.
+/// Escapes text so that Markdown shows it literally and on one line. Nothing in it acts as markup, as a tag, as a
+/// mention of a user or an issue, or as the end of a table cell.
 std::string plain(std::string_view text) {
     std::string markdown;
     while (!text.empty()) {
@@ -55,7 +55,7 @@ std::string table_text(const std::string& title, const ReportTable& table) {
     return table.rest.empty() ? text : text + "\n" + table.rest + "\n";
 }
 
-/// A fence longer than any in the text.
+/// The text as a code block. Its fence is longer than any fence in the text.
 std::string fenced(const std::string& text) {
     std::size_t longest = 2, run = 0;
     for (const char c : text) {

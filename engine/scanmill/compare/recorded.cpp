@@ -28,7 +28,7 @@ Error no_ended_run(const std::string& what, const fs::path& folder) {
     return Error("no run{} in '{}' has ended", what, folder.string()).hint("scanmill runs " + folder.string());
 }
 
-/// The last run of the batch that ended; of any batch if its name is empty.
+/// The last run of the batch that ended; the last run of any batch if `batch` is empty.
 std::optional<RunSummary> last_ended(const std::vector<RunSummary>& runs, const std::string& batch) {
     for (auto run = runs.rbegin(); run != runs.rend(); ++run)
         if (run->outcome && (batch.empty() || run->workflow == batch)) return *run;
@@ -44,14 +44,14 @@ std::int64_t ended_run(const std::vector<RunSummary>& runs, const RecordedRun& w
     }
     const auto found = std::ranges::find(runs, *which.run, &RunSummary::id);
     if (found == runs.end())
-        throw Error("there is no run {} in '{}'; there are {} to {}", *which.run, which.folder.string(),
+        throw Error("there is no run {} in '{}'; the runs are {} to {}", *which.run, which.folder.string(),
                     runs.front().id, runs.back().id);
     if (!found->outcome)
         throw Error("run {} in '{}' has not ended: it still runs, or it was killed", *which.run, which.folder.string());
     return *which.run;
 }
 
-/// The run that `run`, recorded in `records` of `folder`, is compared with.
+/// The run with which `run` is compared. `run` is recorded in `records` of `folder`.
 std::optional<Baseline> baseline_for(const RunDetails& run, const RunRecords& records, const fs::path& folder,
                                      const std::optional<RecordedRun>& against) {
     const std::string& batch = run.start.workflow;
@@ -73,7 +73,7 @@ std::optional<Baseline> baseline_for(const RunDetails& run, const RunRecords& re
     }
     const bool is_same_folder = !against || fs::weakly_canonical(against->folder) == fs::weakly_canonical(folder);
     if (!is_same_folder) baseline.folder = against->folder.string();
-    // A run before the one that it is compared with has no earlier costs but those.
+    // If the compared run is older than the baseline, only the costs of the baseline itself count.
     const std::int64_t first = baseline.run.summary.id;
     const std::int64_t end = !is_same_folder          ? std::numeric_limits<std::int64_t>::max()
                              : run.summary.id > first ? run.summary.id

@@ -21,7 +21,7 @@ bool has_several_workflows(const Comparison& comparison) {
     });
 }
 
-/// The variant's name, after the workflow's name if there are several.
+/// The variant's name, with the workflow's name before it if `with_workflow`.
 std::string variant_text(const CellComparison& cell, bool with_workflow) {
     return with_workflow ? cell.workflow + ": " + cell.variant : cell.variant;
 }
@@ -123,7 +123,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comp
 ReportTable change_table(const Comparison& comparison, std::size_t most) {
     ReportTable table{{"scan", "variant", "what", "accepted", "now", "change", "rule", ""}, {}, {}};
     const bool with_workflow = has_several_workflows(comparison);
-    std::map<std::vector<std::string>, std::size_t> row_of_change;  // by all but the variant
+    std::map<std::vector<std::string>, std::size_t> row_of_change;  // by the cells of the row except the variant
     std::size_t left_out = 0;
     for (const RankedChange& change : what_changed(comparison)) {
         std::vector<std::string> row{change.cell->scan, ""};
@@ -156,11 +156,11 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
         if (!is_trouble(verdict)) continue;
         for (const CellComparison& cell : comparison.cells) {
             if (cell.verdict != verdict) continue;
-            // What changed in a regressed cell is in the other table.
+            // The reasons of a regressed cell are changes, which are in the table of changes.
             std::vector<std::string> why = cell.causes;
             if (verdict != Verdict::regressed || why.empty())
                 why.insert(why.begin(), cell.reasons.begin(), cell.reasons.end());
-            if (!cell.moved.empty()) why.emplace_back("its earlier outputs are now *.previous");
+            if (!cell.moved.empty()) why.emplace_back("the earlier outputs were renamed to *.previous");
             const std::string text = fmt::format("{}", fmt::join(why, "; "));
             const std::string variant = variant_text(cell, with_workflow);
             const auto known = row_of_reason.find({std::string(name_of(verdict)), cell.scan, text});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A comparison as short texts and tables, which the formats for people arrange.
+/// Short texts and tables that describe a comparison. The formats for people are composed of them.
 
 #include <string>
 #include <utility>
@@ -13,30 +13,32 @@ namespace scanmill {
 struct ReportTable {
     std::vector<std::string> headers;
     std::vector<std::vector<std::string>> rows;
-    std::string rest;  ///< "and 12 more": what the limit left out; empty: nothing
+    std::string rest;  ///< "and 12 more", if the limit left out rows; empty otherwise
 };
 
 /// "12 cells: 1 failed, 2 regressed, 9 passed"
 std::string counts_text(const Comparison& comparison);
 /// "run 14 of 2026-11-23T02:00:11Z against run 9 of …, accepted by Ann: a new scanner"
 std::string runs_text(const Comparison& comparison);
-/// Name and text: `version`, `machine`, `gate`, `filters`, `note`; only existing ones.
+/// Names and texts of properties of the comparison. The names are `version`, `machine`, `gate`, `filters` and `note`;
+/// properties without a text are left out.
 std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comparison);
 
-/// What changed, in the order of what_changed(). Changes that do not trip are left out where `most` rows do not
-/// suffice.
+/// A table of the changes in the order of what_changed(), regressions first. It has at most `most` rows.
 ReportTable change_table(const Comparison& comparison, std::size_t most);
 
-/// Cells that failed, are missing or doubtful, or regressed, with what differs in their files and steps, else with
-/// their reasons. A reason that several variants of a scan share is given once.
+/// A table of the cells that failed, are missing, regressed or are doubtful, and the reasons. A regressed cell has the
+/// differences of its files and steps if there are any. Variants of a scan with the same text share a row. The table
+/// has at most `most` rows.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
-/// Scans × variants for one metric; the unit is in the first header. A value is followed by `!` if it regressed
-/// and by `?` if its cell is doubtful; a cell without the value shows its verdict. With more than `most` scans, those
-/// whose cells did not pass come first.
+/// A table of one metric with a row per scan and a column per variant; the unit is in the first header. A value is
+/// followed by `!` if it regressed, and by `?` if its cell is doubtful. If a cell that did not pass lacks the value,
+/// the table shows the verdict. With more than `most` scans, the table has only `most` rows, and scans with such cells
+/// come first.
 ReportTable matrix(const Comparison& comparison, const std::string& metric, std::size_t most);
 
-/// The commands that reproduce failed and regressed cells, equal ones once.
+/// The commands that reproduce regressed and failed cells. Equal commands appear once.
 std::vector<std::string> commands_of(const Comparison& comparison);
 
 }  // namespace scanmill

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The numbers that a recorded cell has, and which of them a name means.
+/// The numbers of a recorded cell, and the numbers to which a name in a gate's rule refers.
 
 #include <map>
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace scanmill {
 
-/// A number of a cell, and where it comes from.
+/// A number of a cell, and its source.
 struct CellValue {
     enum class Of { measurement, output, step };
 
@@ -20,25 +20,26 @@ struct CellValue {
     std::string source;  ///< the label of the step, or the name of the output's file without its folder
     Metric metric;
     LengthUnit lengths = LengthUnit::unknown;
-    double diagonal = 0;  ///< what `%diag` refers to; NaN: the source has none
+    double diagonal = 0;  ///< the length to which `%diag` refers; NaN: the source has none
 
     /// "measure-surface.hausdorff"
     std::string full_name() const { return source + "." + metric.name; }
 };
 
-/// The steps of a run by their node. A node that was recorded twice, as its cached value was lost, counts as run last.
+/// The steps of a run by their node. A node whose cached value was lost has two records; the last one is used.
 using StepsByNode = std::map<std::size_t, const StepRecord*>;
 StepsByNode steps_by_node(const RunDetails& run);
 
-/// Metrics and properties of the steps and of the written outputs: first of measuring steps, then of outputs, then of
-/// the other steps. A property of a step whose metric has the same name is left out. NaN is left out: it is undefined.
+/// The metrics and properties of a cell: first those of measuring steps, then those of outputs, then those of the other
+/// steps. If a step has a metric and a property of the same name, only the metric is included. NaN is left out, because
+/// it means undefined.
 std::vector<CellValue> values_of(const CellRecord& cell, const StepsByNode& steps);
 
-/// What `name` means among them: for STEP.NAME the values of that step; else those of measurements with this name; if
-/// there is none, of outputs; if there is none, of all steps.
+/// The values to which `name` refers. STEP.NAME refers to the values of that step. NAME refers to measurements of this
+/// name; without such measurements, to properties of outputs; without such outputs, to values of all steps.
 std::vector<const CellValue*> named(std::span<const CellValue> values, std::string_view name);
 
-/// The value of the same source and name; `hint` is where it probably is. Null: there is none.
+/// The value with the same source and name as `like`; nullptr if `values` has none. `hint` is its probable index.
 const CellValue* same_value(std::span<const CellValue> values, const CellValue& like, std::size_t hint = 0);
 
 }  // namespace scanmill

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The JSON documents that steps write and workflows read, as JSON Schemas (draft 7), for programs that make or use
-/// them.
+/// JSON Schemas (draft 7) of the JSON documents that steps write and workflows read.
 
 #include <string>
 #include <string_view>
@@ -9,9 +8,9 @@
 
 namespace scanmill {
 
-/// The kinds with a JSON form.
+/// The names of the kinds that have a JSON form.
 const std::vector<std::string>& document_names();
-/// Indented JSON with a trailing newline. Pre: one of document_names().
+/// The schema of a kind as indented JSON with a trailing newline. Pre: `name` is one of document_names().
 std::string document_schema(std::string_view name);
 
 }  // namespace scanmill

@@ -20,7 +20,7 @@ void add_columns(Json& json, const char* name, const ColumnTable& table) {
     json[name] = std::move(rows);
 }
 
-/// The columns of every table, by the table's name.
+/// Adds the columns of every table of a value to a JSON object, under the table's name.
 class ListColumns : public FieldVisitor {
 public:
     explicit ListColumns(Json& json) : json_(json) {}
@@ -43,7 +43,8 @@ void add_frame(Json& json, const Frame& frame) {
     if (frame.origin != Vec3::Zero()) json["origin"] = json_of(frame.origin);
 }
 
-/// `stray`, and with stray points the diagonal that `%diag` refers to and the first of them.
+/// Adds the number of stray points as `stray`. If there are any, also adds the diagonal to which `%diag` refers, and
+/// the first stray points.
 void add_stray_points(const RobustBox& box, const Frame& frame, Json& json) {
     constexpr std::size_t shown = 5;
     json["stray"] = box.stray.size();
@@ -55,7 +56,7 @@ void add_stray_points(const RobustBox& box, const Frame& frame, Json& json) {
             {{"number", box.stray[i].row}, {"position", json_of(Vec3(box.stray[i].position + frame.origin))}});
 }
 
-/// The description of a scan that is read piece by piece.
+/// The output for a scan that is read in chunks.
 Json stream_info(const std::string& file, const PointStream& scan) {
     Json json{{"file", file}, {"kind", name_of(kind_of<PointCloud>())}, {"points", scan.size()}};
     add_columns(json, "columns", scan.read_columns(0));
@@ -77,7 +78,7 @@ Json file_info(const std::string& file, u64 memory) {
         const auto scan = may_be_point_stream(file) ? open_point_stream(file, options, usable_cores()) : nullptr;
         if (!scan) require_memory_to_read(file, memory);
         Json json = stream_info(file, *scan);
-        warnings.push_back("it was read piece by piece, because it may not fit into memory; the spacing is not known");
+        warnings.push_back("the file was read in chunks, because it may not fit into memory; the spacing is not known");
         json["warnings"] = warnings;
         return json;
     }

@@ -14,7 +14,7 @@ constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the
 
 bool is_readable(Kind kind) { return kind == kind_of<PointCloud>() || kind == kind_of<TriangleMesh>(); }
 
-/// A valid value, or a valid item of a list, for examples of parameters without a default.
+/// A valid value, or a valid item of a list, for the example of a parameter without a default.
 std::string sample_item(const ParameterSpec& parameter) {
     switch (parameter.type) {
         case ParameterType::boolean: return "true";
@@ -36,7 +36,7 @@ std::string sample(const ParameterSpec& parameter) {
     return fmt::format("[{}]", fmt::join(std::vector<std::string>(parameter.size.value_or(1), item), ", "));
 }
 
-/// Escapes the bar, which ends a cell of a table.
+/// Escapes the character |, which would end a cell of a table.
 std::string cell(std::string_view text) {
     std::string escaped(text);
     for (std::size_t at = 0; (at = escaped.find('|', at)) != std::string::npos; at += 2) escaped.insert(at, 1, '\\');
@@ -94,7 +94,7 @@ std::string remarks(const FilterSpec& spec) {
     return list.empty() ? list : "\n" + list;
 }
 
-/// The first filter that makes this kind from kinds that files can hold.
+/// The first filter whose first output has this kind and whose required inputs can be read from files.
 const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
     for (const std::string& name : library.names()) {
         const FilterSpec* spec = library.find(name);
@@ -104,7 +104,7 @@ const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
     return nullptr;
 }
 
-/// The step with its required parameters, or with all of them.
+/// The step with all parameters if `whole`, and only with required parameters if not.
 std::string example_step(const FilterSpec& spec, bool whole) {
     std::string step = fmt::format("  - {}:\n", spec.name);
     for (const ParameterSpec& parameter : spec.parameters) {
@@ -117,7 +117,8 @@ std::string example_step(const FilterSpec& spec, bool whole) {
     return step;
 }
 
-/// `in:` for a filter with a port that only `in` can wire; the input of its name feeds every port.
+/// `in:` for a filter with a port that only `in` can wire; empty for other filters. Every port takes the workflow input
+/// that has the name of the port.
 std::string example_wiring(const FilterSpec& spec) {
     if (std::ranges::all_of(spec.inputs, [](const PortSpec& port) { return port.also.empty(); })) return {};
     std::string wiring;
@@ -126,7 +127,7 @@ std::string example_wiring(const FilterSpec& spec) {
     return fmt::format("    in: {{{}}}\n", wiring);
 }
 
-/// The filter, the filters that make its inputs, and the ports that read files.
+/// The steps of an example: the filter and the filters that make its inputs. `inputs` are the ports that read files.
 struct ExampleSteps {
     std::vector<const FilterSpec*> steps;
     std::vector<const PortSpec*> inputs;
@@ -188,8 +189,10 @@ std::string stream_text(const FilterSpec& spec) {
 }
 
 std::string measures_text(const MeasureSpec& measures) {
-    return fmt::format("The value at `{}` by the one at `{}`; a batch applies it to the results of scans with a truth.",
-                       measures.value, measures.truth);
+    return fmt::format(
+        "Compares the value at `{}` with the truth at `{}`; a batch applies the filter to the results of scans with a "
+        "truth.",
+        measures.value, measures.truth);
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The declaration of a filter as an example workflow, and as a page in Markdown.
+/// Writes an example workflow and a page in Markdown from the declaration of a filter.
 
 #include <string>
 #include <string_view>
@@ -9,8 +9,9 @@
 
 namespace scanmill {
 
-/// A whole workflow with this filter, every parameter at its default. Inputs that no file can hold are made by the
-/// first filter of the library that can; if there is one, the workflow passes `scanmill check`.
+/// A whole workflow with this filter, in which every parameter has its default. If no file can hold an input, the first
+/// filter of the library that can make it is an earlier step. If such filters exist, the workflow passes `scanmill
+/// check`.
 std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library);
 
 /// The filter's page: ports, parameters, metrics and the example.
@@ -22,9 +23,9 @@ std::string filter_index(const std::vector<FilterSpec>& specs);
 /// Whether the text is one of these pages.
 bool is_filter_page(std::string_view text);
 
-/// The sentence about reading the scan in chunks. Pre: spec.streams.
+/// A sentence that states when the filter reads the scan in chunks. Pre: spec.streams.
 std::string stream_text(const FilterSpec& spec);
-/// A sentence that names the measured input and its truth.
+/// A text that names the input port of the measured value and that of the truth.
 std::string measures_text(const MeasureSpec& measures);
 
 }  // namespace scanmill

@@ -28,38 +28,41 @@ Json plan() {
                               {"key", text()},
                               {"line", count()},
                               {"column", count()},
-                              {"in", described("By port.", map_of(list_of(text())))},
+                              {"in", described("Sources of values by input port.", map_of(list_of(text())))},
                               {"streams", described("Ports whose scan is read as a stream.", list_of(text()))},
                               {"parameters", map_of(text())},
                               {"expect?", list_of(text())},
-                              {"measures?", described("What it measures by the scan's truth.", text())},
-                              {"file?", described("The batch that line and column are in.", text())}});
+                              {"measures?", described("The value that the step measures by the scan's truth.", text())},
+                              {"file?", described("The batch file to which line and column refer.", text())}});
     const Json variant = object({{"name", text()},
                                  {"steps", described("Numbers of steps, from 0.", list_of(count()))},
-                                 {"outputs", described("By file name.", map_of(text()))}});
+                                 {"outputs", described("Sources of the outputs by file name.", map_of(text()))}});
     return object(
         {{"name", text()}, {"inputs", list_of(input)}, {"steps", list_of(step)}, {"variants", list_of(variant)}});
 }
 
 Json check_schema() {
     const Json diagnostic = object({{"severity", {{"enum", {"error", "warning"}}}},
-                                    {"line", described("0: of the whole file.", count())},
+                                    {"line", described("0: the message is about the whole file.", count())},
                                     {"column", count()},
                                     {"message", text()}});
-    const Json file = object(
-        {{"file", text()},
-         {"ok", flag()},
-         {"diagnostics", list_of(diagnostic)},
-         {"plan?", plan()},
-         {"further-plans?", described("Of a workflow that a batch runs with different inputs.", list_of(plan()))}});
+    const Json file =
+        object({{"file", text()},
+                {"ok", flag()},
+                {"diagnostics", list_of(diagnostic)},
+                {"plan?", plan()},
+                {"further-plans?",
+                 described("Further plans of a workflow that a batch runs with different inputs.", list_of(plan()))}});
     return document("scanmill check, and run or batch of a file with errors", object({{"files", list_of(file)}}));
 }
 
 Json error_schema() {
-    return document("The error of any command",
-                    object({{"error", object({{"message", text()},
-                                              {"where", described("The innermost first.", list_of(text()))},
-                                              {"hint?", text()}})}}));
+    return document(
+        "The error of any command",
+        object({{"error",
+                 object({{"message", text()},
+                         {"where", described("Context of the error; the innermost part comes first.", list_of(text()))},
+                         {"hint?", text()}})}}));
 }
 
 Json list_schema() {
@@ -72,10 +75,11 @@ Json show_schema() { return document("scanmill show FILTER", object({{"filter", 
 
 Json show_example_schema() {
     return document("scanmill show FILTER, the example",
-                    object({{"filter", text()}, {"example", described("A workflow.", text())}}));
+                    object({{"filter", text()}, {"example", described("An example workflow.", text())}}));
 }
 
-/// A kind's properties (`points`, `closed` …) and the tables of its columns have names of their own.
+/// The names of some members depend on the kind: those of its properties (`points`, `closed` …) and of its tables of
+/// columns.
 Json info_schema() {
     const Json position =
         described("x, y, z.", {{"type", "array"}, {"items", number()}, {"minItems", 3}, {"maxItems", 3}});
@@ -88,8 +92,8 @@ Json info_schema() {
                         {"high?", position},
                         {"diagonal?", number()},
                         {"spacing?", number()},
-                        {"stray?", described("Points far from all others.", count())},
-                        {"robust-diagonal?", described("Without stray points: what %diag refers to.", number())},
+                        {"stray?", described("Number of points that are far from all others.", count())},
+                        {"robust-diagonal?", described("Diagonal without stray points; %diag refers to it.", number())},
                         {"stray-points?", list_of(object({{"number", count()}, {"position", position}}))},
                         {"not-finite?", count()},
                         {"unit?", length_unit_or_null()},
@@ -108,7 +112,7 @@ Json info_schema() {
 Json measure_schema() {
     return document("scanmill measure", object({{"unit", length_unit_or_null()},
                                                 {"metrics", metrics()},
-                                                {"units", described("By metric.", map_of(unit()))},
+                                                {"units", described("Units by metric.", map_of(unit()))},
                                                 {"mesh", text()},
                                                 {"truth", text()},
                                                 {"warnings", list_of(text())}}));
@@ -124,16 +128,16 @@ Json cache_clear_schema() { return document("scanmill cache clear", object({{"re
 
 Json dry_run_schema() {
     const Json input = object({{"port", text()},
-                               {"node", described("The number of another node, from 0.", count())},
-                               {"from", described("Its output port; empty: the file.", text())}});
+                               {"node", described("Number of the node that makes the value, from 0.", count())},
+                               {"from", described("Output port of that node; empty: the node reads a file.", text())}});
     const Json node = object({{"key", text()},
                               {"step", text()},
                               {"in", list_of(input)},
-                              {"file?", described("Of a node that reads one.", text())},
+                              {"file?", described("The file that the node reads; absent for other nodes.", text())},
                               {"streamed?", flag()},
                               {"unreadable?", described("Why the file cannot be read.", text())},
                               {"cached", flag()},
-                              {"why?", described("Why it will run.", text())}});
+                              {"why?", described("Why the node will run.", text())}});
     return document(
         "scanmill run or batch, the dry run",
         object(
@@ -156,7 +160,7 @@ Json report_schema() {
     return schema::document("scanmill report DIR", report);
 }
 
-/// One line of a batch: `event` decides on the members.
+/// The schema of one line that a batch prints. The value of `event` decides which members the line has.
 Json batch_event_schema() {
     const std::pair<const char*, Json> events[] = {{"run-started", JsonForm<RunStartedEvent>::schema()},
                                                    {"step-started", JsonForm<StepStartedEvent>::schema()},

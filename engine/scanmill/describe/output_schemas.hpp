@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What the commands print with --json, as JSON Schemas (draft 7), for programs that read it.
+/// JSON Schemas (draft 7) of the documents that the commands print with --json.
 ///
-/// A schema names every member that a document may have, so an unknown or a missing one is an error. `"scanmill": 1` is
-/// the version of all documents: it rises when a member disappears or changes its meaning; members may be added.
+/// A schema names every member that a document may have, so an unknown member is an error. `"scanmill": 1` is the
+/// version of all documents. It increases when a member is removed or changes its meaning, but not when a member is
+/// added.
 
 #include <string>
 #include <string_view>
@@ -11,9 +12,9 @@
 
 namespace scanmill {
 
-/// The documents: the commands' names, and `error`, which any command may print instead.
+/// The names of the documents: those of commands, and `error`, which any command may print instead.
 const std::vector<std::string>& output_names();
-/// Indented JSON with a trailing newline. Pre: one of output_names().
+/// The schema of a document as indented JSON with a trailing newline. Pre: `name` is one of output_names().
 std::string output_schema(std::string_view name);
 
 }  // namespace scanmill

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Parts of JSON Schemas (draft 7).
+/// Functions that return parts of JSON Schemas (draft 7).
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ inline Json described(const char* description, Json schema) {
     return schema;
 }
 
-/// An object with these members and no others; a name that ends in ? is optional.
+/// The schema of an object with these members and no others. A member whose name ends in ? is optional.
 inline Json object(std::initializer_list<std::pair<std::string, Json>> members) {
     Json required = Json::array(), properties = Json::object();
     for (const auto& [name, schema] : members) {
@@ -39,21 +39,21 @@ inline Json object(std::initializer_list<std::pair<std::string, Json>> members) 
             {"properties", std::move(properties)}};
 }
 
-/// The members of both.
+/// The schema of an object with the members of both schemas.
 inline Json joined(Json one, const Json& other) {
     one["properties"].update(other["properties"]);
     for (const Json& name : other["required"]) one["required"].push_back(name);
     return one;
 }
 
-/// A whole document.
+/// The schema of a whole document with these members.
 inline Json document(const char* title, const Json& members) {
     Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
     schema.update(joined(object({{"scanmill", {{"const", 1}}}}), members));
     return schema;
 }
 
-/// The names of an enumeration without gaps, from `first` to `last`.
+/// The names of the values of an enumeration from `first` to `last`. Pre: the values have no gaps.
 template <class Enum>
 Json names(Enum first, Enum last) {
     Json all = Json::array();

@@ -18,12 +18,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* length_units = "u|%diag|spacing|um|mm|cm|m|in|ft";
 
-/// The definitions that both grammars use. A literal is not a reference `$name`; `$$` begins a text with one $.
+/// The definitions that both grammars use. A literal is any value except a reference `$name`; it may begin with `$$`,
+/// which stands for one $.
 const char* const common_definitions = R"json({
 "unit": {"enum": ["um", "mm", "cm", "m", "in", "ft"], "description": "The unit of the file's numbers."},
 "frame": {"type": ["string", "number", "boolean"], "description": "The coordinate system's name; may contain {stem}."},
 "invalid": {"enum": ["drop", "refuse"],
-            "description": "What happens to rows with a NaN, infinite or too distant coordinate; without it, formats that write NaN for a missing return drop them, others are refused."},
+            "description": "How to treat rows with a NaN, infinite or too distant coordinate. By default they are dropped if the file's format writes NaN for a missing return; otherwise the file is refused."},
 "literal": {"type": ["string", "number", "boolean"], "pattern": "^(?!\\$(?!\\$))"},
 "value": {"if": {"type": "array"}, "then": {"items": {"$ref": "#/definitions/literal"}},
           "else": {"$ref": "#/definitions/literal"}},
@@ -41,7 +42,7 @@ const char* const workflow_grammar = R"json({
   "scanmill": {"const": 1, "description": "The version of the grammar."},
   "name": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$", "description": "The workflow's name."},
   "summary": {"type": ["string", "number", "boolean"], "description": "What the workflow does, in a sentence."},
-  "inputs": {"type": ["object", "null"], "description": "Files; the scans feed the first, files named for the run the others.",
+  "inputs": {"type": ["object", "null"], "description": "Input files. The first input takes the scans; the files of other inputs are named for the run.",
              "propertyNames": {"pattern": "^[A-Za-z][A-Za-z0-9_-]*$"},
              "additionalProperties": {"$ref": "#/definitions/input"}},
   "parameters": {"type": ["object", "null"], "description": "Values that steps refer to by $name; a run can replace them.",
@@ -49,7 +50,7 @@ const char* const workflow_grammar = R"json({
                  "additionalProperties": {"$ref": "#/definitions/parameter"}},
   "steps": {"$ref": "#/definitions/steps"},
   "outputs": {"type": ["object", "null"], "additionalProperties": {"type": "string"},
-              "description": "Files: names over {scan}, {folder}, {variant} and {workflow}, each with its step."}
+              "description": "Output files: the step whose result is written, by file name. Names may contain {scan}, {folder}, {variant} and {workflow}."}
 },
 "definitions": {
   "kind-name": {"description": "The kind of value in the file."},
@@ -76,19 +77,19 @@ const char* const workflow_grammar = R"json({
            "else": {"$ref": "#/definitions/step"}},
   "step": {"type": "object", "additionalProperties": false, "properties": {
     "id": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
-           "description": "How later steps and outputs refer to this step."},
-    "in": {"description": "The values of the ports; without it, the nearest earlier ones."},
-    "expect": {"description": "What must be true of the result, else the scan fails."}}},
+           "description": "The name by which later steps and outputs refer to this step."},
+    "in": {"description": "The values for the ports. A port without one takes the nearest earlier value of its kind."},
+    "expect": {"description": "Conditions on the result. If one is not met, the scan fails."}}},
   "one-of": {"required": ["one-of"], "additionalProperties": false, "properties": {
     "id": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
-           "description": "How later steps and outputs refer to the last step of the alternative that ran."},
+           "description": "The name by which later steps and outputs refer to the last step of the alternative that ran."},
     "one-of": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/alternative"},
-               "description": "Alternatives: everything below runs once for each."}}},
+               "description": "Alternatives. All later steps run once for each alternative."}}},
   "alternative": {"if": {"type": "array"}, "then": {"$ref": "#/definitions/steps"},
                   "else": {"if": {"type": "object", "required": ["steps"]}, "else": {"$ref": "#/definitions/item"},
                            "then": {"additionalProperties": false, "properties": {
     "name": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
-             "description": "The alternative's part of the names of variants."},
+             "description": "The name of the alternative, which is part of the names of variants."},
     "steps": {"$ref": "#/definitions/steps"}}}}}
 }})json";
 
@@ -106,26 +107,26 @@ const char* const batch_grammar = R"json({
                 "if": {"type": "string"}, "then": {"$ref": "#/definitions/workflow"},
                 "else": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/workflow"}}},
   "set": {"$ref": "#/definitions/settings"},
-  "limits": {"type": ["object", "null"], "description": "The most that one scan under one variant may cost.",
+  "limits": {"type": ["object", "null"], "description": "Limits of memory and time for one scan under one variant.",
              "additionalProperties": false, "properties": {
     "memory": {"$ref": "#/definitions/memory"},
     "time": {"$ref": "#/definitions/time"},
-    "step": {"type": "object", "description": "The same for one step.", "additionalProperties": false,
+    "step": {"type": "object", "description": "Limits of memory and time for one step.", "additionalProperties": false,
              "properties": {"memory": {"$ref": "#/definitions/memory"}, "time": {"$ref": "#/definitions/time"}}},
-    "retries": {"type": "integer", "minimum": 0, "description": "How often failed work is tried again."}}},
+    "retries": {"type": "integer", "minimum": 0, "description": "How many times failed work is tried again."}}},
   "measure": {"type": ["object", "null"], "additionalProperties": false,
-              "description": "Measures the results of every scan with a truth; parameters of the measuring filter.",
+              "description": "Measures the results of every scan that has a truth. Other keys are parameters of the measuring filter.",
               "properties": {
     "of": {"description": "The steps to measure; without it, the outputs of the workflows.",
            "if": {"type": "array"}, "then": {"minItems": 1, "items": {"type": "string"}}, "else": {"type": "string"}},
     "filter": {"description": "The measuring filter, if several are installed."}}},
   "gate": {"type": "object", "minProperties": 1,
-           "description": "By how much metrics, costs and outputs may differ from the accepted run.",
+           "description": "Rules that limit by how much metrics, costs and outputs may differ from the accepted run.",
            "propertyNames": {"pattern": "^[a-z][A-Za-z0-9_@.-]*$"},
            "additionalProperties": {"$ref": "#/definitions/tolerance"},
            "properties": {
-    "outputs": {"const": "exact", "description": "No output file may change a byte."},
-    "repeats": {"type": "integer", "minimum": 1, "description": "How often a run measures its costs."}}}
+    "outputs": {"const": "exact", "description": "No byte of an output file may change."},
+    "repeats": {"type": "integer", "minimum": 1, "description": "How many times a run measures its costs."}}}
 },
 "definitions": {
   "scan": {"if": {"type": "object"}, "else": {"$ref": "#/definitions/scan-path"}, "then": {
@@ -151,7 +152,7 @@ const char* const batch_grammar = R"json({
                    "frame": {"$ref": "#/definitions/frame"}}}},
   "tolerance": {"type": ["string", "number"], "pattern": "^(exact|[-+]? *[0-9.].*)$", "examples": ["+1 %", "-0.01 mm", "exact"],
                 "patternErrorMessage": "Expected an amount with its sign and unit, as +1 %, or exact."},
-  "scan-path": {"type": "string", "minLength": 1, "description": "A file, or several by *, ?, […] and **."},
+  "scan-path": {"type": "string", "minLength": 1, "description": "A file, or several files matched by *, ?, […] and **."},
   "workflow": {"type": "string", "minLength": 1, "description": "A workflow file."},
   "settings": {"type": ["object", "null"], "description": "Values of the workflows' parameters, by their names.",
                "additionalProperties": false,
@@ -168,12 +169,13 @@ const char* const batch_grammar = R"json({
            "else": {"if": {"type": "array"}, "else": {"type": "string", "minLength": 1},
                     "then": {"items": {"$ref": "#/definitions/four-numbers"}, "minItems": 4, "maxItems": 4}}},
   "memory": {"type": "string", "pattern": " *([KMGT]iB|[kMGT]?B)$", "examples": ["8 GiB"],
-             "description": "Most memory; work that needs more is stopped."},
+             "description": "Largest memory. Work that needs more is stopped."},
   "time": {"type": "string", "pattern": " *(ms|s|min|h)$", "examples": ["10 min"],
-           "description": "Longest time; work that takes longer is stopped."}
+           "description": "Longest time. Work that takes longer is stopped."}
 }})json";
 
-/// The beginning of a text with a unit: a decimal number with the sign and zeros that the lower bound allows.
+/// A regular expression for the number at the beginning of a text with a unit. It excludes negative numbers and zero if
+/// the lower bound excludes them.
 std::string number_pattern(const std::optional<Bound>& low) {
     const bool no_negative = low && low->value >= 0;
     const bool no_zero = no_negative && !low->inclusive;
@@ -191,7 +193,7 @@ Json list_of(Json item, std::optional<std::size_t> size) {
     return list;
 }
 
-/// Editors show the error message in place of the pattern, and propose the examples.
+/// The schema of a number with a unit. Editors show `expected` instead of the pattern, and propose the examples.
 Json text_with_unit(const std::optional<Bound>& low, const std::string& units, std::string_view expected,
                     Json examples) {
     return {{"type", "string"},
@@ -200,7 +202,7 @@ Json text_with_unit(const std::optional<Bound>& low, const std::string& units, s
             {"examples", std::move(examples)}};
 }
 
-/// One value, without words and lists.
+/// The schema of one value, without the parameter's word and without lists.
 Json scalar_schema(const ParameterSpec& parameter) {
     const auto text = [&](const char* units, Json examples) {
         return text_with_unit(parameter.low, units, expectation(parameter), std::move(examples));
@@ -228,10 +230,10 @@ Json scalar_schema(const ParameterSpec& parameter) {
     return {{"oneOf", std::move(choices)}};
 }
 
-/// A value, with the parameter's word, or a list of `item`.
+/// The schema of a value: a single value, the parameter's word, or a list of `item`.
 Json value_schema(const ParameterSpec& parameter, Json item) {
     Json value = scalar_schema(parameter);
-    // One value in place of a list is the list of that value, if the list may have that length.
+    // A single value in place of a list means a list of one value, if the list may have that length.
     if (parameter.list && parameter.size.value_or(1) != 1)
         value = list_of(std::move(item), parameter.size);
     else if (parameter.list)
@@ -240,12 +242,12 @@ Json value_schema(const ParameterSpec& parameter, Json item) {
     return value;
 }
 
-/// A value, `$name` or `{sweep: […]}`, with the parameter's help, range and default as its description.
+/// The schema of a value, `$name` or `{sweep: […]}`. Its description contains the parameter's help, range and default.
 Json parameter_schema(const ParameterSpec& parameter) {
     const Json reference{{"type", "string"}, {"pattern", R"(^\$[A-Za-z])"}};
     const Json value = either(reference, Json::object(),
                               value_schema(parameter, either(reference, Json::object(), scalar_schema(parameter))));
-    const Json sweep{{"description", "Runs everything from here on once for each value."},
+    const Json sweep{{"description", "Runs this step and all later steps once for each value."},
                      {"required", Json::array({"sweep"})},
                      {"additionalProperties", false},
                      {"properties", {{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", value}}}}}};
@@ -271,14 +273,14 @@ Json filter_schema(const FilterSpec& spec) {
     return schema;
 }
 
-/// A parameter of a measuring step, which has one value.
+/// The schema of a parameter under `measure`, which takes neither `$name` nor a sweep.
 Json measuring_schema(const ParameterSpec& parameter) {
     Json schema = value_schema(parameter, scalar_schema(parameter));
     schema["description"] = parameter_schema(parameter)["description"];
     return schema;
 }
 
-/// `in:` of a filter: a map from its ports, or a single name if there is one port.
+/// The schema of `in:` for a filter: a map from its ports, or also a single name if the filter has one port.
 Json in_schema(const FilterSpec& spec) {
     const Json source{{"type", "string"}};
     Json map{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
@@ -329,7 +331,7 @@ std::string workflow_schema(const FilterLibrary& library) {
             {{"if", {{"required", Json::array({name})}}},
              {"then", {{"properties", {{"in", in_schema(spec)}, {"expect", expect_schema(spec)}}}}}});
     }
-    // Unknown keys are an error already.
+    // The rule of one filter applies only if all keys are known: additionalProperties already reports unknown keys.
     step["if"] = {{"propertyNames", {{"enum", std::move(names)}}}};
     step["then"] = {{"oneOf", std::move(one_filter)}};
     return with_common_definitions(std::move(schema));
@@ -341,7 +343,9 @@ std::string batch_schema(const FilterLibrary& library) {
     Json& gate = schema["properties"]["gate"]["properties"];
     Json measuring = Json::array();
     for (const char* cost : {"seconds", "cpu-seconds", "memory"})
-        gate[cost] = {{"type", "string"}, {"pattern", "^\\+.*%$"}, {"description", "Costs of a cell, as +20 %."}};
+        gate[cost] = {{"type", "string"},
+                      {"pattern", "^\\+.*%$"},
+                      {"description", "Largest rise of this cost of a cell, as +20 %."}};
     gate["repeats"]["maximum"] = most_repeats;
     for (const std::string& name : library.names()) {
         const FilterSpec& spec = *library.find(name);

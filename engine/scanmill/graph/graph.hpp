@@ -82,7 +82,7 @@ struct LeafSource {
     std::string frame;  ///< empty: from the file
     std::optional<RigidTransform> pose;
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
-    bool is_streamed = false;  ///< read in blocks if the file allows it; not in the key, because results are equal
+    bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
 };
 constexpr auto fields(const LeafSource*) {
@@ -162,7 +162,7 @@ RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library,
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);
 
-// Streams. A scan is read in blocks, and never loaded whole, if all steps that read it can read a stream. Some files
+// Streams. A scan is read in chunks, and never loaded whole, if all steps that read it can read a stream. Some files
 // turn out not to allow streaming when they are opened; such a scan is loaded whole, with the same results.
 
 /// Whether the step can read its scan as a stream. The filter must be able to, and the scan must be its only wired

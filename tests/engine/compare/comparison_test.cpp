@@ -184,10 +184,10 @@ TEST(Comparison, FailedCells_AreFailedWithTheirReason) {
     EXPECT_THAT(comparison.cells[0].moved, ElementsAre("a-default.ply.previous"));
     RunDetails before = run_of_one(1, 0.5);
     before.cells[0].outcome = Outcome::failed;
-    EXPECT_THAT(compared(now, before).cells[0].reasons, Contains("it failed in the accepted run, too"));
+    EXPECT_THAT(compared(now, before).cells[0].reasons, Contains("the cell failed in the accepted run, too"));
     const Comparison repaired = compared(run_of_one(2, 0.5), before);
     EXPECT_EQ(repaired.verdict, Verdict::improved);
-    EXPECT_THAT(repaired.cells[0].reasons, ElementsAre("it failed in the accepted run"));
+    EXPECT_THAT(repaired.cells[0].reasons, ElementsAre("the cell failed in the accepted run"));
 }
 
 TEST(Comparison, DoubtfulCells_AreDoubtfulUnlessTheyRegress) {
@@ -318,7 +318,8 @@ TEST(Comparison, Costs_TripAboveTheFloor) {
     const Comparison tripped = with_costs({2, 2.1, 2.2}, 20);
     ASSERT_THAT(tripped.cells[0].costs, SizeIs(3)) << "all costs are listed";
     EXPECT_EQ(tripped.cells[0].costs[0].probability, 1.0 / 1771);
-    EXPECT_THAT(tripped.cells[0].reasons, ElementsAre(HasSubstr("seconds is 2.08 times that of 20 earlier passes")));
+    EXPECT_THAT(tripped.cells[0].reasons,
+                ElementsAre(HasSubstr("seconds is 2.08 times the median of 20 earlier passes")));
 }
 
 TEST(Comparison, TimeSpentWaiting_NeedsMore) {

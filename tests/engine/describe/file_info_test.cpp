@@ -32,7 +32,7 @@ TEST(FileInfo, OfPointsLargerThanMemory_IsThatOfTheWholeFile_WithoutTheSpacing) 
         EXPECT_EQ(streamed.at(key), whole.at(key)) << key;
     EXPECT_TRUE(whole.contains("spacing"));
     EXPECT_FALSE(streamed.contains("spacing"));
-    EXPECT_THAT(streamed.at("warnings").at(0).get<std::string>(), HasSubstr("piece by piece"));
+    EXPECT_THAT(streamed.at("warnings").at(0).get<std::string>(), HasSubstr("read in chunks"));
 }
 
 TEST(FileInfo, OfAMeshLargerThanMemory_IsRefusedWithBothNumbers) {
