@@ -123,7 +123,8 @@ private:
                 measure.of.push_back({*text, item.position});
     }
 
-    /// One value: results that are measured in different ways cannot be compared.
+    /// The value of a parameter under `measure`. A sweep is an error, because results that are measured in different
+    /// ways cannot be compared.
     ValueExpression measuring_value(const YamlNode& node) {
         ValueExpression value = value_expression(node, diagnostics_);
         refuse_uses(value, "a parameter of `measure`", diagnostics_);
@@ -156,7 +157,7 @@ private:
         gate.repeats = static_cast<unsigned>(whole_number(entry, 1, most_repeats).value_or(1));
     }
 
-    /// Nothing after an error.
+    /// The whole number, from `low` to `high`. Reports other values and returns nothing.
     std::optional<std::int64_t> whole_number(const YamlEntry& entry, int low, int high) {
         ParameterSpec spec;
         spec.type = ParameterType::integer;
@@ -169,7 +170,7 @@ private:
         return number;
     }
 
-    /// Passes the text to `read`, whose Errors are reported at the value.
+    /// Passes the text of a value to `read`. If `read` throws an Error, reports it at the value.
     template <class Read>
     void read_value(const YamlEntry& entry, std::string_view expected, const Read& read) {
         try {
@@ -212,9 +213,7 @@ private:
             return;
         }
         if (const std::optional<Error> other = why_no_file(file)) {
-            diagnostics_.error(node.position,
-                               "{}; expected a workflow, by a path that counts from the "
-                               "batch's own folder",
+            diagnostics_.error(node.position, "{}; expected a workflow file, by a path relative to the batch's folder",
                                other->sentence());
             return;
         }
@@ -233,7 +232,7 @@ private:
     std::map<fs::path, int> line_of_;
 };
 
-/// A key of the settings' values; positions do not count.
+/// A key that is equal for settings with equal names and values. Positions are not part of the key.
 std::string key_of(const Settings& settings) {
     KeyBuilder key;
     for (const auto& [name, value] : settings) {
@@ -247,7 +246,7 @@ std::string key_of(const Settings& settings) {
     return key.key();
 }
 
-/// The batch's values, overridden by the scan's, for the names that the workflow declares.
+/// The values of the parameters that the workflow declares. Values of the scan override values of the batch.
 Settings settings_for(const Workflow& workflow, const Settings& of_batch, const Settings& of_scan) {
     Settings settings = of_scan;
     settings.insert(of_batch.begin(), of_batch.end());
@@ -281,9 +280,7 @@ public:
             check_gate(batch, checked_.parts, library_, batch_diagnostics_);
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
-            batch_diagnostics_.error({},
-                                     "has {} cells (scans times variants); expected at most {}: make "
-                                     "several batches of it",
+            batch_diagnostics_.error({}, "has {} cells (scans times variants); expected at most {}: split the batch",
                                      cells, most_cells);
         else if (is_sound && !batch_diagnostics_.has_errors())
             report_shared_files();
@@ -302,7 +299,7 @@ private:
         return std::span(workflow.inputs).subspan(std::min<std::size_t>(1, workflow.inputs.size()));
     }
 
-    /// The filter that measures; null after an error in its name or parameters.
+    /// The filter that measures; nullptr after an error in its name or its parameters.
     const FilterSpec* measuring_filter(const BatchMeasure& written) {
         const std::vector<std::string> names = measuring_filters(library_);
         const auto error = [&](Position position, std::string message) {
@@ -340,7 +337,8 @@ private:
         return step;
     }
 
-    /// `plain`: the plan of the workflow, whose outputs are measured unless `of` names other values.
+    /// The workflow with an input for the truth and the measuring steps. `plain` is the plan of the workflow. Its
+    /// outputs are measured unless BatchMeasure::of names other values.
     Workflow with_measurements(Workflow workflow, const Plan& plain, Diagnostics& diagnostics) const {
         const auto& [value_port, truth_port] = *measuring_->measures;
         const Position position = checked_.batch.measure->position;
@@ -392,7 +390,7 @@ private:
         }
         Diagnostics diagnostics(listed.file.string());
         const Workflow workflow = parse_workflow(text, diagnostics);
-        if (workflow.steps.empty()) unreadable_ = true;  // nor could its parameters
+        if (workflow.steps.empty()) unreadable_ = true;  // its parameters may not have been read, either
         report_unfed_inputs(workflow, listed);
         if (!workflow.inputs.empty()) {
             takes_scans_ = true;
@@ -410,7 +408,7 @@ private:
         checked_.diagnostics.push_back(std::move(diagnostics));
     }
 
-    /// Scans of equal values, and one by one either all with a truth or none.
+    /// Scans with equal values. If the workflow takes one scan per run, either all of them have a truth or none has.
     struct Group {
         Settings settings;
         std::vector<std::size_t> scans;
@@ -418,7 +416,8 @@ private:
 
     void add_parts(const Workflow& workflow, std::size_t index, Diagnostics& diagnostics) {
         const Batch& batch = checked_.batch;
-        if (batch.scans.empty() || workflow.inputs.empty()) {  // errors in the workflow are found without scans too
+        if (batch.scans.empty() ||
+            workflow.inputs.empty()) {  // plan the workflow even without scans, to find its errors
             auto planned = plan(workflow, settings_for(workflow, batch.settings, {}), false, diagnostics);
             if (workflow.inputs.empty()) checked_.parts.push_back({std::move(planned), index, {}});
             return;
@@ -453,19 +452,20 @@ private:
         return std::make_shared<const Plan>(std::move(plan));
     }
 
-    /// One run of a list of scans takes the further files of all of them.
+    /// Reports scans whose files for other inputs differ, because a workflow that takes all scans in one run needs the
+    /// same files for all of them.
     void require_agreement(const Workflow& workflow, const BatchWorkflow& listed, std::span<const std::size_t> scans) {
         const std::vector<BatchScan>& all = checked_.batch.scans;
         for (const WorkflowInput& input : further_inputs(workflow)) {
             const auto first = all[scans.front()].inputs.find(input.name);
-            if (first == all[scans.front()].inputs.end()) continue;  // reported
+            if (first == all[scans.front()].inputs.end()) continue;  // report_unfed_inputs() reported it
             for (const std::size_t scan : scans)
                 if (const auto other = all[scan].inputs.find(input.name);
                     other != all[scan].inputs.end() && other->second.files != first->second.files) {
                     batch_diagnostics_.error(
                         other->second.position,
                         "'{}' takes all scans in one run, which needs the same files for the input '{}'; '{}' and '{}' "
-                        "have different ones",
+                        "have different files",
                         listed.file.string(), input.name, all[scans.front()].file.string(), all[scan].file.string());
                     break;
                 }
@@ -478,9 +478,10 @@ private:
         for (const std::size_t scan : group.scans)
             if (!all[scan].truth.has_same_files(first)) {
                 batch_diagnostics_.warning(
-                    listed.position, fmt::format("'{}' takes all scans in one run, and they have different truths: its "
-                                                 "results are not measured",
-                                                 listed.file.string()));
+                    listed.position,
+                    fmt::format("'{}' takes all scans in one run, but the scans have different truths, "
+                                "so its results are not measured",
+                                listed.file.string()));
                 return false;
             }
         return !first.files.empty();
@@ -500,7 +501,7 @@ private:
             if (!unfed.empty())
                 batch_diagnostics_.error(
                     listed.position,
-                    "nothing feeds the input '{}' of '{}' for the scan '{}'{}; expected `in: {{{}: FILE}}` at the scan",
+                    "the input '{}' of '{}' has no file for the scan '{}'{}; expected `in: {{{}: FILE}}` at the scan",
                     input.name, listed.file.string(), unfed.front(),
                     unfed.size() > 1 ? fmt::format(" and {} more", unfed.size() - 1) : "", input.name);
         }
@@ -532,7 +533,8 @@ private:
                                          did_you_mean(name, names));
     }
 
-    /// A rule for invalid rows has no effect if no workflow takes points. Scans of one entry have one position.
+    /// Reports rules for invalid rows if no workflow takes points, because they have no effect. Scans of one entry
+    /// share a position, which is reported once.
     void report_idle_rules() {
         if (takes_points_) return;
         std::set<std::pair<int, int>> reported;
@@ -564,10 +566,11 @@ private:
                                      "scan");
     }
 
-    /// Values under `of` that are not measured, and a batch or a workflow of which nothing is measured.
+    /// Reports values under `of` that are not measured, a batch without any measured result, and workflows without a
+    /// measured result.
     void report_unmeasured() {
-        std::set<std::string> steps;                 // that measure
-        std::set<std::size_t> measured, unmeasured;  // workflows
+        std::set<std::string> steps;  // names of measuring steps
+        std::set<std::size_t> measured, unmeasured;  // workflows with measuring steps, and all that take a truth
         for (const BatchPart& part : checked_.parts) {
             if (!takes_truth(*part.plan)) continue;
             unmeasured.insert(part.workflow);
@@ -578,7 +581,7 @@ private:
                         measured.insert(part.workflow);
                     }
         }
-        if (unmeasured.empty()) return;  // lists of scans that disagree on their truth
+        if (unmeasured.empty()) return;  // every run takes a list of scans with different truths
         const std::vector<Reference>& of = checked_.batch.measure->of;
         for (const Reference& value : of)
             if (!steps.contains(measuring_step_name(value))) report_unmeasured(value);
@@ -593,7 +596,7 @@ private:
                 batch_diagnostics_.warning(
                     checked_.batch.workflows[workflow].position,
                     fmt::format(
-                        "nothing of '{}' is measured: {}", checked_.batch.workflows[workflow].file.string(),
+                        "no result of '{}' is measured: {}", checked_.batch.workflows[workflow].file.string(),
                         of.empty() ? "it has no output of kind " + kinds : "it has none of the steps under `of`"));
     }
 
@@ -638,14 +641,14 @@ private:
         return name;
     }
 
-    /// Two cells must not write one file. Only the first ten such files are reported.
+    /// Reports cells that would write the same file. Reports only the first ten errors.
     void report_shared_files() {
         OutputNames files{fs::path()};
         std::size_t shared = 0;
         for (std::size_t part = 0; part < checked_.parts.size(); ++part) {
             const Plan& plan = *checked_.parts[part].plan;
             const Position of_workflow = checked_.batch.workflows[checked_.parts[part].workflow].position;
-            std::vector<const BatchScan*> scans;  // nullptr: one run for all scans, or without any
+            std::vector<const BatchScan*> scans;  // nullptr: one run with all scans, or without a scan
             if (!plan.workflow.inputs.empty() && !takes_list(plan.workflow))
                 for (const std::size_t scan : checked_.parts[part].scans) scans.push_back(&checked_.batch.scans[scan]);
             else
@@ -663,7 +666,8 @@ private:
         }
     }
 
-    /// `scan`: empty if the cell has no scan of its own. Equal values of one cell may share a file.
+    /// Adds the outputs of a cell. `scan` is empty if the run of the cell takes all scans or no scan. Equal values of
+    /// one scan may share a file.
     void add_outputs(OutputNames& files, const Plan& plan, const PlannedVariant& variant, const fs::path& scan,
                      const std::string& part) const {
         const std::string workflow = workflow_name(plan), name = scan.empty() ? workflow : scan.string();
@@ -685,7 +689,7 @@ private:
     CheckedBatch checked_;
     const FilterSpec* measuring_ = nullptr;  // null: the batch does not measure
     std::set<std::string> declared_;
-    std::set<std::string> first_inputs_, further_inputs_;  // names
+    std::set<std::string> first_inputs_, further_inputs_;  // names of inputs
     bool takes_scans_ = false, takes_points_ = false;
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown
 };

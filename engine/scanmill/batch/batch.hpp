@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Batch files: which scans run under which workflows, with which values, limits and further inputs, how results are
-/// measured by their truths, and by how much they may differ from the accepted run. A batch is parsed, then checked
-/// together with its workflows.
+/// Batch files. A batch lists scans and the workflows that run on them, with their values, limits and further inputs.
+/// It also states how results are measured by their truths, and by how much they may differ from the accepted run. A
+/// batch is parsed, then checked together with its workflows.
 ///
-/// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
-/// number of folders, never a name that begins with a dot. A parsed batch holds the files found, sorted, every file
-/// once.
+/// Paths are relative to the batch file. Scans are named by paths with wildcards; see scan_files(). A parsed batch
+/// holds every file once. The files of one entry are sorted.
 
 #include <filesystem>
 #include <map>
@@ -22,27 +21,27 @@
 
 namespace scanmill {
 
-/// Most attempts after the first, so that a step that always fails does not take all night.
+/// The most attempts after the first. The limit keeps a step that always fails from running all night.
 inline constexpr int most_retries = 10;
 /// The most `repeats` of a gate.
 inline constexpr unsigned most_repeats = 20;
 
-/// A cell is one scan under one variant of a workflow. 0: no limit.
+/// Limits for a cell, which is one scan under one variant of a workflow, and for a step. 0: no limit.
 struct Limits {
-    u64 cell_memory = 0, step_memory = 0;  ///< bytes
+    u64 cell_memory = 0, step_memory = 0;  ///< in bytes
     double cell_seconds = 0, step_seconds = 0;
-    unsigned retries = 0;  ///< after the first attempt
+    unsigned retries = 0;  ///< number of attempts after the first
 
     bool operator==(const Limits&) const = default;
 };
 
-/// The files of a scan for one further input of the workflows that have it. They need not exist: a missing file fails
-/// the cells that read it.
+/// The files of a scan for one workflow input other than the first. They need not exist: a missing file fails only the
+/// cells that read it.
 struct BatchInput {
     std::vector<std::filesystem::path> files;
-    LengthUnit unit = LengthUnit::unknown;  ///< unknown: the files' own
-    std::string frame;                      ///< {stem} replaced; empty: the files' own
-    Position position;                      ///< of the input's name
+    LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the files
+    std::string frame;                      ///< with {stem} replaced; empty: from the files
+    Position position;                      ///< position of the input's name
 
     bool has_same_files(const BatchInput& other) const {
         return files == other.files && unit == other.unit && frame == other.frame;
@@ -51,16 +50,16 @@ struct BatchInput {
 
 struct BatchScan {
     std::filesystem::path file;
-    Position position;  ///< of the path in the batch file
+    Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;                   ///< {stem} replaced; empty: the workflow's or the file's own
+    std::string frame;                   ///< with {stem} replaced; empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;     ///< empty: the pose is written in the batch
-    BatchInput truth;                          ///< no files: the scan has none
-    std::map<std::string, BatchInput> inputs;  ///< by the inputs' names; a checked batch that measures has the truth
+    BatchInput truth;                          ///< without files: the scan has no truth
+    std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
-    Position invalid_position;                     ///< of the key `invalid`
-    Settings settings;                   ///< the scan's own, which override the batch's
+    Position invalid_position;                     ///< position of the key `invalid`
+    Settings settings;                   ///< values of this scan, which override Batch::settings
 };
 
 struct BatchWorkflow {
@@ -71,20 +70,21 @@ struct BatchWorkflow {
 /// The input that `measure` adds to the workflows of scans with a truth.
 inline constexpr const char* truth_input = "truth";
 
-/// `measure`: the workflows of scans with a truth get one more input, the truth, wired by `in` alone, and at their end
-/// a measuring step for every value, `measure-VALUE`. The workflows must not use these names.
+/// The key `measure` of a batch. It adds an input for the truth to the workflows of scans that have a truth. It also
+/// adds a measuring step `measure-VALUE` for every measured value to the end of these workflows. The workflows must not
+/// use the names of that input and of these steps.
 struct BatchMeasure {
     Position position;
-    std::string filter;  ///< empty: the only installed one that measures
+    std::string filter;  ///< empty: the only installed filter that measures
     Position filter_position;
-    std::vector<Reference> of;  ///< the values; empty: the workflows' outputs that the filter accepts
+    std::vector<Reference> of;  ///< values to measure; empty: the outputs that the filter accepts
     std::vector<NamedExpression> parameters;
 };
 
-/// In Settings a value's `position` is that of its name.
+/// A parsed batch file. In Settings, the position of a value is the position of its name.
 struct Batch {
     std::string file, name, summary;
-    std::vector<BatchScan> scans;  ///< in the order of the entries, within one by path
+    std::vector<BatchScan> scans;  ///< in the order of the entries; the scans of one entry are sorted by path
     std::vector<BatchWorkflow> workflows;
     Settings settings;
     Limits limits;
@@ -92,48 +92,55 @@ struct Batch {
     std::optional<Gate> gate;
 };
 
-/// The batch in `text`; `diagnostics` is that of its file. All errors are reported, and everything that could be read
-/// is returned. Looks for the files that the batch names and reads poses, but opens no scan. A missing truth or file of
-/// a further input is a warning. Names in `set` and `in` that no workflow declares, and everything about `measure` and
-/// `gate` that depends on filters, are found by check_batch().
+/// Parses the batch in `text`. `diagnostics` belongs to the batch file. Reports all errors and returns everything that
+/// could be read. Looks for the files that the batch names and reads poses, but opens no scan. Warns about a missing
+/// truth and about a missing file of another input.
+///
+/// check_batch() finds the other errors: names in `set` and `in` that no workflow declares, and errors in `measure` and
+/// `gate` that depend on filters.
 Batch parse_batch(const std::string& text, Diagnostics& diagnostics);
 
-/// The names of the filters that measure a value by a truth and need nothing else.
+/// The names of the filters that measure a value by a truth and need no other input.
 std::vector<std::string> measuring_filters(const FilterLibrary& library);
 
-/// Whether the text is a batch rather than a workflow: it has the key `batch`.
+/// Whether the text is a batch and not a workflow. A batch has the key `batch`.
 bool is_batch(const std::string& text);
 
-/// One workflow under one set of values, and its scans: those with a truth, whose results are measured, or those
-/// without.
+/// One workflow with one set of values, and the scans that it runs on. Either all these scans have a truth and their
+/// results are measured, or no result is measured.
 struct BatchPart {
     std::shared_ptr<const Plan> plan;
     std::size_t workflow = 0;  ///< index into Batch::workflows
-    std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; none for a workflow without inputs
+    std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; empty for a workflow without inputs
     std::vector<std::string> only{};  ///< names of the variants to run; empty: all
 };
 
 struct CheckedBatch {
     Batch batch;
-    /// Workflow by workflow, within one in the order of the first scan. A workflow whose first input is a list takes
-    /// all scans of a part at once; they must agree on the files of the other inputs, and are measured if they agree on
-    /// the truth. A workflow without inputs runs once.
+    /// Sorted by workflow, then by the first scan. A workflow whose first input is a list takes all scans of a part in
+    /// one run. These scans must have the same files for the other inputs. Results of the run are measured if the scans
+    /// have the same truth. A workflow without inputs runs once.
     std::vector<BatchPart> parts;
-    /// Problems of the batch file, then of each readable workflow, checked with all values that it is run with.
+    /// Errors and warnings about the batch file, then about each readable workflow. A workflow is checked with every
+    /// set of values with which it runs.
     std::vector<Diagnostics> diagnostics;
 
-    /// If true, no part must be run.
+    /// Whether there are errors. If so, no part must be run.
     bool has_errors() const;
-    /// Variants of all workflows; a variant in several parts of a workflow counts once.
+    /// The number of variants of all workflows. A variant in several parts of a workflow counts once.
     std::size_t variants() const;
-    /// Runs times variants, over all workflows: a run takes one scan, a list of scans, or none.
+    /// The number of cells: for every part, its variants times its runs. A run takes one scan, a list of scans, or no
+    /// scan.
     std::size_t cells() const;
 };
 
-/// Checks the batch in `text`, the content of `file`. A scan's values are the batch's `set`, overridden by its own, for
-/// the names that the workflow declares. Scans with equal values share a part and its plan. Wrong values, and names
-/// that no workflow declares, are reported at their position in the batch, as are inputs that nothing feeds, outputs of
-/// two cells with one name, measured values that do not exist, and rules of the gate that nothing can meet or break.
+/// Checks the batch in `text`, the content of `file`. A scan's values are those of the batch's `set` and of its own
+/// `set`, which takes precedence, as far as the workflow declares their names. Scans with equal values share a part and
+/// its plan.
+///
+/// Reports these errors at their positions in the batch: wrong values, names that no workflow declares, inputs without
+/// files, outputs of two cells with the same name, measured values that do not exist, and rules of the gate that apply
+/// to no metric.
 CheckedBatch check_batch(const std::string& text, const std::string& file, const FilterLibrary& library);
 
 }  // namespace scanmill

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-/// The properties of a metric that rules need.
+/// The properties of a metric that are needed to check a rule.
 struct Gated {
     Unit unit;
     Better better;
@@ -61,7 +61,7 @@ private:
         }
     }
 
-    /// The metrics that the rule is for (see gate.hpp); none after an error.
+    /// The metrics to which the rule applies (see gate.hpp); empty after an error.
     std::vector<Gated> metrics_of(const GateRule& rule) {
         if (const std::size_t dot = rule.metric.find('.'); dot != std::string::npos)
             return of_step(rule, rule.metric.substr(0, dot), rule.metric.substr(dot + 1));
@@ -114,9 +114,9 @@ private:
         }
         for (const std::string& filter : library_.names())
             if (const FilterSpec& spec = *library_.find(filter); spec.measures && spec.metric(rule.metric)) {
-                diagnostics_.error(rule.position, "'{}' is measured by '{}', but {}", rule.metric, filter,
-                                   !batch_.measure ? "the batch has no `measure:`"
-                                                   : "no result is: no scan with a truth has a value to measure");
+                diagnostics_.error(
+                    rule.position, "'{}' is measured by '{}', but {}", rule.metric, filter,
+                    !batch_.measure ? "the batch has no `measure:`" : "no scan with a truth has a value to measure");
                 return;
             }
         std::set<std::string> metrics{"seconds", "cpu-seconds", "memory", "outputs"};

@@ -8,8 +8,8 @@
 
 namespace scanmill {
 
-/// Reports every rule for a metric that nothing has or that is only measured where nothing is measured, and every rule
-/// whose text does not fit its metric's unit and better direction. Pre: the batch has a gate, and its parts are planned
+/// Reports every rule for a metric that no step, measurement or output of the batch has. Reports every rule whose text
+/// does not fit the unit and the better direction of its metric. Pre: the batch has a gate, and its parts are planned
 /// without errors.
 void check_gate(const Batch& batch, std::span<const BatchPart> parts, const FilterLibrary& library,
                 Diagnostics& diagnostics);

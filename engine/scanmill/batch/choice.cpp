@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws Error for the first name that `exists` is false for.
+/// Throws Error for the first name for which `exists` is false.
 template <class Exists>
 void require_all(const std::vector<std::string>& names, std::string_view noun, std::vector<std::string> known,
                  const Exists& exists) {
@@ -64,7 +64,7 @@ void choose(CheckedBatch& checked, const BatchChoice& choice) {
         }
         parts.push_back(std::move(part));
     }
-    if (parts.empty()) throw Error("no cell of the batch has all that was chosen");
+    if (parts.empty()) throw Error("no cell of the batch matches all chosen names");
     checked.parts = std::move(parts);
 }
 

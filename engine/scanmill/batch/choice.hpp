@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A part of a batch's cells, chosen by name: to run one cell again.
+/// Chooses cells of a batch by name, for example to run one cell again.
 
 #include <string>
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace scanmill {
 
-/// Empty lists choose everything.
+/// Names of the chosen scans, workflows and variants. An empty list chooses all.
 struct BatchChoice {
-    std::vector<std::string> scans;      ///< paths from the batch's folder, or as they were found
+    std::vector<std::string> scans;      ///< paths relative to the batch's folder, or as BatchScan::file
     std::vector<std::string> workflows;  ///< names
     std::vector<std::string> variants;
 
     bool is_all() const { return scans.empty() && workflows.empty() && variants.empty(); }
 };
 
-/// Leaves the chosen cells in the batch's parts. Throws Error for a name that is not in the batch, and for names that
-/// together choose no cell.
+/// Removes all cells that are not chosen from the batch's parts. Throws Error for a name that is not in the batch, and
+/// for names that together choose no cell.
 void choose(CheckedBatch& batch, const BatchChoice& choice);
 
 }  // namespace scanmill

@@ -34,7 +34,7 @@ bool is_folder(const fs::path& path) {
     return fs::is_directory(path.empty() ? fs::path(".") : path, ignored);
 }
 
-/// The folder's absolute path, for messages.
+/// The absolute path of the folder, for messages.
 std::string shown(const fs::path& folder) {
     std::error_code trouble;
     const fs::path absolute = fs::absolute(folder.empty() ? fs::path(".") : folder, trouble).lexically_normal();
@@ -89,7 +89,7 @@ private:
 
     static bool is_hidden(const fs::path& entry) { return entry.filename().native().starts_with('.'); }
 
-    /// The type of the entry itself: links are not followed.
+    /// The type of the entry itself. Links are not followed.
     fs::file_type own_type(const fs::path& path) {
         std::error_code trouble;
         const fs::file_type type = fs::symlink_status(path, trouble).type();
@@ -97,7 +97,8 @@ private:
         return type;
     }
 
-    /// Warns; once per folder if it cannot be entered, because all its entries then give the same error.
+    /// Warns that a path cannot be read. If its folder cannot be entered, warns only once per folder, because all
+    /// entries of the folder give the same error.
     void skip(const fs::path& path, const std::error_code& why) {
         if (why != std::errc::permission_denied)
             warn("'{}' cannot be read: {}; it is left out", path.string(), why.message());
@@ -117,7 +118,7 @@ private:
         for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, trouble), end;
              !trouble && entry != end; entry.increment(trouble)) {
             if (++names_ > most_names)
-                throw Error("more than {} names were visited; write the folders in more detail", most_names);
+                throw Error("more than {} names were visited; use a path with fewer wildcards", most_names);
             all.push_back(folder / entry->path().filename());
         }
         if (trouble && folder == begin_)
@@ -168,7 +169,7 @@ std::vector<fs::path> scan_files(const fs::path& folder, const std::string& patt
 
 namespace {
 
-/// The path in normal form: `a/../b` becomes `b`, unless a link makes that another file.
+/// The path in normal form: `a/../b` becomes `b`, unless that is another file because `a` is a link.
 fs::path without_detours(const fs::path& file) {
     fs::path shorter = file.lexically_normal();
     std::error_code other;
@@ -181,8 +182,8 @@ const std::string pose_label = "the pose";
 bool read_numbers(const YamlNode& node, std::span<double> values, std::string_view expected, Diagnostics& diagnostics) {
     if (!require_list(node, expected, diagnostics)) return false;
     if (node.items.size() != values.size()) {
-        diagnostics.error(node.position, "a list of {}; expected {}", count_text(node.items.size(), "value", "values"),
-                          expected);
+        diagnostics.error(node.position, "found a list of {}; expected {}",
+                          count_text(node.items.size(), "value", "values"), expected);
         return false;
     }
     bool sound = true;
@@ -195,7 +196,7 @@ bool read_numbers(const YamlNode& node, std::span<double> values, std::string_vi
     return sound;
 }
 
-/// The result of `make`; its Error is reported at `position`.
+/// The result of `make`. If `make` throws an Error, reports it at `position` and returns nothing.
 template <class Make>
 auto or_report(Position position, Diagnostics& diagnostics, Make&& make) -> std::optional<decltype(make())> {
     try {
@@ -208,7 +209,7 @@ auto or_report(Position position, Diagnostics& diagnostics, Make&& make) -> std:
 
 std::optional<RigidTransform> from_matrix(const YamlNode& node, Diagnostics& diagnostics) {
     if (node.items.size() != 4) {
-        diagnostics.error(node.position, "a matrix of {}; expected 4 rows of 4 numbers",
+        diagnostics.error(node.position, "found a matrix of {}; expected 4 rows of 4 numbers",
                           count_text(node.items.size(), "row", "rows"));
         return std::nullopt;
     }
@@ -247,14 +248,14 @@ std::optional<RigidTransform> from_parts(const YamlNode& node, Diagnostics& diag
     return pose;
 }
 
-/// Four rows of four numbers, or `{translation: [x, y, z], rotation: [qx, qy, qz, qw]}`; without a unit. Nothing after
-/// an error.
+/// Parses four rows of four numbers, or `{translation: [x, y, z], rotation: [qx, qy, qz, qw]}`. The result has no unit.
+/// Returns nothing after an error.
 std::optional<RigidTransform> parse_pose(const YamlNode& node, Diagnostics& diagnostics) {
     return node.is_sequence() ? from_matrix(node, diagnostics) : from_parts(node, diagnostics);
 }
 
-/// The pose of the scan: the one that names it, or the only one if that names no scan. Throws Error when no pose, or
-/// several, belong to this scan.
+/// The pose that names the scan. If the file contains only one pose, and that pose names no scan, it is the pose of the
+/// scan. Throws Error if no pose or several poses belong to the scan.
 RigidTransform pose_of(const fs::path& scan, const std::vector<ScanPose>& poses, const std::string& file) {
     std::vector<std::string> names;
     std::vector<const ScanPose*> fitting;
@@ -348,7 +349,7 @@ private:
         }
     }
 
-    /// Sentences about many scans, of which the first ten are reported.
+    /// Collects sentences about many scans. Only the first ten are reported.
     class Complaints {
     public:
         void add(std::string sentence) {
@@ -359,7 +360,8 @@ private:
         void report(std::string_view what, const Report& report) {
             for (std::string& sentence : sentences_) report(std::move(sentence));
             if (count_ > most)
-                report(fmt::format("and {} more: {} of that many scans is missing or wrong too", count_ - most, what));
+                report(fmt::format("for {}, {} is missing or wrong, too",
+                                   count_text(count_ - most, "more scan", "more scans"), what));
         }
 
     private:
@@ -368,7 +370,7 @@ private:
         std::size_t count_ = 0;
     };
 
-    /// A path that may contain {stem} and {folder}; nothing after an error.
+    /// Reads a path that may contain {stem} and {folder}. Returns nothing after an error.
     std::optional<std::string> path_template(const YamlNode& node, const std::string& what, std::string_view forms) {
         const auto text = require_text(node, forms, diagnostics_);
         if (!text) return std::nullopt;
@@ -382,14 +384,16 @@ private:
         return folder_ / with_stem_and_folder(path_template, scan.file);
     }
 
-    /// Why there is no file, for the scan that needs it; nothing if there is one. `what`: "the truth".
+    /// A sentence that explains why `file`, which `scan` needs, is missing; nothing if the file exists. `what`: "the
+    /// truth".
     static std::optional<std::string> missing(const fs::path& file, std::string_view what, const BatchScan& scan) {
         if (const std::optional<Error> other = why_no_file(file))
             return fmt::format("{}; expected {} of '{}'", other->sentence(), what, scan.file.string());
         return std::nullopt;
     }
 
-    /// Calls `take` with every scan and its file. Missing files are warnings: they fail the cells that read them.
+    /// Calls `take` with every scan and its file. A missing file is only a warning, because it only fails the cells
+    /// that read it.
     template <class Take>
     void take_files(const YamlNode& node, const std::string& what, std::string_view forms, std::span<BatchScan> scans,
                     const Take& take) {
@@ -477,7 +481,7 @@ private:
 
     fs::path folder_;
     Diagnostics& diagnostics_;
-    std::map<fs::path, std::vector<ScanPose>> poses_;  // each file is read once for all its scans
+    std::map<fs::path, std::vector<ScanPose>> poses_;  // by file, so that each file is read only once
     std::vector<BatchScan> scans_;
     std::map<fs::path, int> line_of_;
 };
@@ -496,7 +500,7 @@ Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics) {
         if (!require_name(entry.key, entry.position, "a parameter", diagnostics)) continue;
         ValueExpression value = value_expression(entry.value, diagnostics);
         refuse_uses(value, "a setting", diagnostics);
-        if (value.values.empty()) continue;  // after an error
+        if (value.values.empty()) continue;  // the value could not be read
         value.position = entry.position;
         settings.emplace(entry.key, std::move(value));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// `scans` of a batch: the files that paths with wildcards match, with their units, frames, poses, truths and values.
+/// Parses `scans` of a batch: finds the files that match paths with wildcards, and reads their units, frames, poses,
+/// truths and values.
 
 #include <filesystem>
 #include <string>
@@ -11,20 +12,24 @@
 
 namespace scanmill {
 
-/// The regular files below `folder` (or anywhere, if `pattern` is absolute) that match `pattern`, sorted by the bytes
-/// of their paths, which begin as folder and pattern do. `*`, `?` and `[…]` match parts of one name, a component `**`
-/// any number of folders, or none; no wildcard matches a leading dot. `**` does not follow links to folders. An
-/// existing path that equals the pattern is that file, whatever characters it has. `warn` gets a sentence for every
-/// folder below the first that cannot be read, and for every matching link that leads nowhere; their files are left
-/// out. Throws Error naming the folder that was searched: no file, a folder in place of a file, an unreadable first
-/// folder, more than a million names visited.
+/// Finds the regular files that match `pattern`. A relative pattern counts from `folder`. The paths begin as folder and
+/// pattern do and are sorted by their bytes.
+///
+/// `*`, `?` and `[…]` match parts of one name. A component `**` matches any number of folders, also none, and does not
+/// follow links to folders. No wildcard matches a leading dot. If a file has exactly the path `pattern`, the result is
+/// that file, even if the path contains wildcard characters.
+///
+/// `warn` gets a sentence for every folder that cannot be read, except the first, and for every matching link without a
+/// target. Their files are left out. Throws Error if no file matches, if the path is a folder, if the first folder
+/// cannot be read, and after more than a million names.
 std::vector<std::filesystem::path> scan_files(const std::filesystem::path& folder, const std::string& pattern,
                                               const OnWarning& warn = {});
 
-/// Paths count from `folder`. Wrong entries are reported and left out.
+/// Parses the list of scans. Paths count from `folder`. Reports wrong entries and leaves them out.
 std::vector<BatchScan> parse_scans(const YamlNode& node, const std::filesystem::path& folder, Diagnostics& diagnostics);
 
-/// The values under `set:`; each one's position is that of its name. Wrong values are reported and left out.
+/// Parses the values under `set:`. The position of a value is the position of its name. Reports wrong values and leaves
+/// them out.
 Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics);
 
 }  // namespace scanmill

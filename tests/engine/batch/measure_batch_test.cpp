@@ -151,7 +151,7 @@ TEST_F(MeasureOfABatch, WorkflowOfWhichNothingIsMeasured_IsAWarning) {
     folder_.write("v.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [thin: ]\noutputs: {'{scan}.ply': thin}\n");
     EXPECT_THAT(check("scanmill: 1\nbatch: b\nscans: [{path: scans/a.ply, truth: truth/a.stl}]\nworkflows: [w.yaml, "
                       "v.yaml]\nmeasure:\n"),
-                ElementsAre(AllOf(StartsWith("b:4:21: warning: nothing of "), HasSubstr("no output of kind mesh"))));
+                ElementsAre(AllOf(StartsWith("b:4:21: warning: no result of "), HasSubstr("no output of kind mesh"))));
     EXPECT_FALSE(checked_.has_errors());
 }
 

@@ -118,9 +118,10 @@ TEST_F(FurtherInputs, AreFedByTheScans) {
 }
 
 TEST_F(FurtherInputs, ThatNothingFeeds_AreReportedAtTheWorkflow) {
-    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {target: t.ply}}, 'scans/[b-d].ply']"),
-                ElementsAre(AllOf(StartsWith("b:3:13: nothing feeds the input 'target' of '"),
-                                  HasSubstr("scans/b.ply' and 2 more; expected `in: {target: FILE}` at the scan"))));
+    EXPECT_THAT(
+        check_two("[{path: scans/a.ply, in: {target: t.ply}}, 'scans/[b-d].ply']"),
+        ElementsAre(AllOf(StartsWith("b:3:13: the input 'target' of '"), HasSubstr("has no file for the scan '"),
+                          HasSubstr("scans/b.ply' and 2 more; expected `in: {target: FILE}` at the scan"))));
 }
 
 TEST_F(FurtherInputs, ThatNoWorkflowHas_AreReportedWithTheClosest) {
