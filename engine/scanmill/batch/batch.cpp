@@ -318,7 +318,7 @@ private:
         const StepSyntax syntax = measuring_step(*spec);
         ExpandedStep step{&syntax, {}, {}};
         for (const NamedExpression& parameter : syntax.parameters)
-            if (!parameter.value.values.empty())  // empty after an error
+            if (!parameter.value.values.empty())  // the value could be read
                 step.arguments.push_back(
                     {&parameter, &parameter.value.values.front(), parameter.value.values.front().literal, {}});
         const std::size_t errors = batch_diagnostics_.errors();

@@ -138,9 +138,8 @@ struct CheckedBatch {
 /// `set`, which takes precedence, as far as the workflow declares their names. Scans with equal values share a part and
 /// its plan.
 ///
-/// Reports these errors at their positions in the batch: wrong values, names that no workflow declares, inputs without
-/// files, outputs of two cells with the same name, measured values that do not exist, and rules of the gate that apply
-/// to no metric.
+/// Reports errors at their positions in the batch: wrong values, undeclared names, inputs without files, outputs of two
+/// cells with the same name, measured values that do not exist, and gate rules that apply to no metric.
 CheckedBatch check_batch(const std::string& text, const std::string& file, const FilterLibrary& library);
 
 }  // namespace scanmill

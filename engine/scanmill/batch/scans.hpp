@@ -15,9 +15,9 @@ namespace scanmill {
 /// Finds the regular files that match `pattern`. A relative pattern counts from `folder`. The paths begin as folder and
 /// pattern do and are sorted by their bytes.
 ///
-/// `*`, `?` and `[…]` match parts of one name. A component `**` matches any number of folders, also none, and does not
-/// follow links to folders. No wildcard matches a leading dot. If a file has exactly the path `pattern`, the result is
-/// that file, even if the path contains wildcard characters.
+/// `*`, `?` and `[…]` match parts of one name. A component `**` matches any number of folders, including none, and does
+/// not follow links to folders. No wildcard matches a leading dot. If a file has exactly the path `pattern`, the result
+/// is that file, even if the path contains wildcard characters.
 ///
 /// `warn` gets a sentence for every folder that cannot be read, except the first, and for every matching link without a
 /// target. Their files are left out. Throws Error if no file matches, if the path is a folder, if the first folder

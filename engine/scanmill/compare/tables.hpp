@@ -27,9 +27,9 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comp
 /// A table of the changes in the order of what_changed(), regressions first. It has at most `most` rows.
 ReportTable change_table(const Comparison& comparison, std::size_t most);
 
-/// A table of the cells that failed, are missing, regressed or are doubtful, and the reasons. A regressed cell has the
-/// differences of its files and steps if there are any. Variants of a scan with the same text share a row. The table
-/// has at most `most` rows.
+/// A table of the cells that failed, are missing, regressed or are doubtful. It shows their reasons, and the
+/// differences in their files and steps. For a regressed cell with such differences, it omits the reasons, which
+/// change_table() shows. Variants of a scan with the same text share a row. The table has at most `most` rows.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
 /// A table of one metric with a row per scan and a column per variant; the unit is in the first header. A value is

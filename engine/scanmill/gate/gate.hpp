@@ -60,7 +60,7 @@ Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, 
 /// better, also throws Error for a rule that limits improvements: one without a sign or with the wrong sign.
 void require_rule_fits(std::string_view text, Unit unit, Better better);
 
-/// Begins the labels of the steps that a batch's `measure` adds.
+/// The beginning of the labels of steps that a batch's `measure` adds.
 inline constexpr std::string_view measurement_prefix = "measure-";
 /// Whether a batch's `measure` added the step with this label, so that its metrics are measurements.
 inline bool is_measurement(std::string_view label) { return label.starts_with(measurement_prefix); }

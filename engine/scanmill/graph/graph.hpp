@@ -103,7 +103,7 @@ struct RunNode {
     std::size_t plan = 0;  ///< index into RunGraph::plans
     std::optional<std::size_t> step;  ///< index into Plan::steps; empty for a leaf
     LeafSource leaf;
-    bool is_scan = false;  ///< leaves only: it feeds the workflow's first input
+    bool is_scan = false;  ///< leaves only: the file feeds the workflow's first input
     std::vector<ParameterFile> parameter_files;  ///< steps only
     bool is_uncacheable = false;  ///< the node or one upstream reads a folder or a file that cannot be hashed
     std::string unreadable;  ///< leaves only: why the content could not be hashed
@@ -155,9 +155,9 @@ using HashOfFile = std::function<std::string(const std::filesystem::path&)>;
 /// is called at most once per file. An input that cannot be read only marks its node. A parameter's file that cannot be
 /// read makes the step uncacheable; its filter reports the error.
 ///
-/// Throws Error if a request does not fit its plan, if two cells would write the same file, and if an output would
-/// replace or create an input, or would lie outside the output folder. Pre: all parts have the same seed and the same
-/// output folder.
+/// Throws Error if a request does not fit its plan, or if two cells would write the same file. Throws Error if an
+/// output would replace or create an input, or would lie outside the output folder. Pre: all parts have the same seed
+/// and the same output folder.
 RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash = content_hash);
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);
@@ -165,7 +165,7 @@ RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& 
 // Streams. A scan is read in chunks, and never loaded whole, if all steps that read it can read a stream. Some files
 // turn out not to allow streaming when they are opened; such a scan is loaded whole, with the same results.
 
-/// Whether the step can read its scan as a stream. The filter must be able to, and the scan must be its only wired
+/// Whether the step can read its scan as a stream. The filter must support streams, and the scan must be its only wired
 /// value (`inputs` is 1). The parameters in StreamSpec::given must have values. No parameter may be in spacings,
 /// because the spacing is computed from all points at once.
 bool can_stream(const PlannedStep& step, std::size_t inputs);

@@ -118,7 +118,7 @@ private:
         std::vector<ChosenArgument> all;
         for (const NamedExpression& parameter : step.parameters) {
             const std::vector<WrittenValue>& values = parameter.value.values;
-            if (values.empty()) continue;  // after an error
+            if (values.empty()) continue;  // no value could be read
             const WrittenValue& written = values[choices_.choose(&values, values.size())];
             const std::size_t parts = name_parts_.size();
             std::optional<ChosenArgument> argument = replaced(step, parameter, written);

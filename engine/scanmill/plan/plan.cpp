@@ -32,8 +32,8 @@ bool names_a_folder(const std::filesystem::path& path) {
     return !path.has_filename() || path.filename() == "." || path.filename() == "..";
 }
 
-/// Reports wrong placeholders, absolute paths, paths that leave the output folder, and paths that are not in normal
-/// form (`a//b`, `a/../b`), because equal files must have equal names.
+/// Reports wrong placeholders, absolute paths, and paths that leave the output folder. Reports paths that are not in
+/// normal form (`a//b`, `a/../b`), because equal files must have equal names.
 void check_template(const WorkflowOutput& output, Diagnostics& diagnostics) {
     const std::string& file = output.file;
     const auto error = [&](std::string message) { diagnostics.error(output.position, std::move(message)); };
@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    /// The steps that the names of one variant refer to, while it is being planned.
+    /// Maps the names in a variant to steps, while the variant is being planned.
     struct Names {
         std::map<std::string, std::size_t> steps;
         std::map<std::string, std::string> unusable;  // name → why; empty: already reported

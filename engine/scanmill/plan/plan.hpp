@@ -44,7 +44,7 @@ constexpr auto fields(const PlannedExpectation*) {
 }
 
 struct PlannedStep {
-    std::string label;  ///< the id, else the filter's name
+    std::string label;  ///< the id, or else the filter's name
     Position position;
     FilterSpec spec;
     ParameterSet parameters;  ///< as authored, with defaults; lengths keep their written units

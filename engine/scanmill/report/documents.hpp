@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What `run`, `batch` and `runs` print with --json, in terms of the records of a run.
+/// The JSON that `run`, `batch` and `runs` print with --json, composed of the records of a run.
 
 #include "scanmill/report/run_report.hpp"
 
 namespace scanmill {
 
-/// `scanmill run --json`
+/// The document that `scanmill run --json` prints.
 struct RunDocument {
     std::string workflow;
     bool interrupted = false;
@@ -19,7 +19,7 @@ constexpr auto fields(const RunDocument*) {
                       field("cells", &R::cells)};
 }
 
-// `scanmill runs`
+// The documents that `scanmill runs` prints.
 
 struct RevocationDocument {
     std::string at, who, why;
@@ -38,7 +38,7 @@ constexpr auto fields(const AcceptanceDocument*) {
     using R = AcceptanceDocument;
     return std::tuple{field("at", &R::at), field("who", &R::who), field("why", &R::why),
                       field("baseline", &R::baseline, "Later runs are compared with this one."),
-                      field("revoked", &R::revoked, "null: it is valid.")};
+                      field("revoked", &R::revoked, "null: the acceptance is valid.")};
 }
 
 struct ListedRun {
@@ -48,7 +48,8 @@ struct ListedRun {
 };
 constexpr auto fields(const ListedRun*) {
     using R = ListedRun;
-    return std::tuple{field("summary", &R::summary).flat(), field("killed", &R::killed, "It has no end.").optional(),
+    return std::tuple{field("summary", &R::summary).flat(),
+                      field("killed", &R::killed, "The run ended without an outcome.").optional(),
                       field("accepted", &R::accepted).optional()};
 }
 
@@ -75,7 +76,7 @@ constexpr auto fields(const ShownRunDocument*) {
     return std::tuple{field("run", &R::run), field("cells", &R::cells), field("steps", &R::steps)};
 }
 
-// Events of a batch: the members that follow `event` and `at`.
+// Events of a batch. These structs hold the members that follow `event` and `at`.
 
 struct RunStartedEvent {
     int scanmill = 1;
@@ -88,7 +89,7 @@ constexpr auto fields(const RunStartedEvent*) {
     using R = RunStartedEvent;
     return std::tuple{field("scanmill", &R::scanmill, "Version of the format."),
                       field("name", &R::name),
-                      field("run", &R::run, "Its number in the records; absent: not recorded.").optional(),
+                      field("run", &R::run, "Number of the run in the records; absent: not recorded.").optional(),
                       field("jobs", &R::jobs),
                       field("threads", &R::threads),
                       field("steps", &R::steps),

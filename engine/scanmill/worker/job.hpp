@@ -68,7 +68,7 @@ constexpr auto fields(const StepWork*) {
                       field("parameter-files", &R::parameter_files), field("caching", &R::caching)};
 }
 
-/// A check whether a cached result meets the step's expectations. The filter does not run.
+/// Checks whether a cached result meets the step's expectations. The filter does not run.
 struct ExpectWork {
     std::shared_ptr<const PlannedStep> step;
     Metrics metrics;

@@ -256,7 +256,7 @@ std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned th
     assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
     std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
-    if (is_too_long(scan->bounds())) return nullptr;  // it may have invalid rows
+    if (is_too_long(scan->bounds())) return nullptr;  // the file may have invalid rows
     naming_file(leaf.file, [&] { require_supported_range(scan->bounds()); });
     if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);
     return scan;

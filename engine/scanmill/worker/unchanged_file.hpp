@@ -13,7 +13,7 @@ namespace scanmill {
 /// Throws Error if the file's content_hash() is not `content`.
 void require_unchanged(const std::filesystem::path& file, const std::string& content);
 
-/// The same check for a file that is about to be read.
+/// Checks that a file that is about to be read does not change until it was read.
 class UnchangedWhileRead {
 public:
     /// To be called before the file is read. If `beside` is true, another thread hashes the file while it is read;

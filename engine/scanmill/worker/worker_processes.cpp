@@ -277,8 +277,8 @@ void WorkerProcesses::report_start_failure(std::size_t worker, const WorkerListe
 }
 
 u64 WorkerProcesses::peak_of(const Slot& slot, const ProcessEnd& end) const {
-    // The peak that the system reports is at least the size that this process had when it started the worker, so it
-    // counts only if it is larger than the peak of this process.
+    // The peak that the system reports is at least the size that this process had when it started the worker. Therefore
+    // the reported peak counts only if it is larger than the peak of this process.
     const u64 ours = resident_memory(::getpid()).peak;
     return std::max(slot.peak_memory, end.peak_memory > ours || slot.peak_memory == 0 ? end.peak_memory : 0);
 }

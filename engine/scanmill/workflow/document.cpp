@@ -32,7 +32,7 @@ namespace {
 
 constexpr std::size_t most_nodes = 1'000'000;
 constexpr std::size_t most_bytes = std::size_t(64) << 20;
-/// Aliases nest trees in trees; recursive walks over them must not overflow the stack.
+/// Aliases can nest trees deeply. The limit keeps recursive functions from overflowing the stack.
 constexpr std::size_t most_levels = 500;
 
 struct TooMuch {

@@ -73,7 +73,7 @@ struct StepSyntax {
     std::string file{};  ///< contains the positions; empty: the workflow file
     bool may_be_left_out = false;  ///< variants that lack a value named by `in` omit the step
 
-    /// How other steps refer to this one.
+    /// The name by which other steps refer to this step.
     const std::string& name() const { return id.empty() ? filter : id; }
 };
 
