@@ -28,15 +28,17 @@ namespace {
 
 using namespace a_patches;
 
-constexpr double thinnest = 1e-9;  // height over longest edge of a triangle with area
+constexpr double thinnest = 1e-9;  // smallest ratio of height to longest edge of a triangle with area
 constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t most_crease_rounds = 2;
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
-constexpr double most_loosened = 0.1;  // share of the vertices, without a doubt
-constexpr double most_worse = 1.01;  // times the points' distance from the mesh, likewise
-constexpr double most_left_out = 0.5;  // share of the points, likewise
-constexpr double rounding = 1e-12;  // of the diagonal
+// Limits beyond which the result is doubtful: a share of the vertices, a multiple of the points' rms distance from the
+// mesh, and a share of the points.
+constexpr double most_loosened = 0.1;
+constexpr double most_worse = 1.01;
+constexpr double most_left_out = 0.5;
+constexpr double rounding = 1e-12;  // share of the diagonal
 constexpr double least_regularisation = 1e-6;
 
 std::string position_text(const TriangleMesh& mesh, u32 vertex) {
@@ -55,12 +57,12 @@ void require_areas(const TriangleMesh& mesh) {
         if (!(u.cross(v).norm() > thinnest * longest) && count++ == 0) first = f;
     }
     if (count > 0)
-        throw Error("{} of {} triangles {} no area, the first is triangle {} at {}", count, mesh.triangles.size(),
+        throw Error("{} of {} triangles {} no area; the first is triangle {} at {}", count, mesh.triangles.size(),
                     by_count(count, "has", "have"), first, position_text(mesh, mesh.triangles[first][0]))
             .hint("`repair` replaces them; `decimate` makes well-shaped triangles");
 }
 
-/// Throws Error if the surface is cut along edges at one position, as that of an STL file.
+/// Throws Error if boundary edges coincide, as in a mesh from an STL file.
 void require_joined(const TriangleMesh& mesh, const Array<u32>& opposites) {
     std::vector<u32> boundary;
     for (u32 half = 0; half < opposites.size(); ++half)
@@ -68,7 +70,7 @@ void require_joined(const TriangleMesh& mesh, const Array<u32>& opposites) {
     const std::vector<u32> cut = coincident_edges(mesh, boundary);
     if (cut.empty()) return;
     const u32 first = half_edges::start(mesh, cut[0]);
-    throw Error("{} of {} boundary edges are at the position of another one, the first begins at vertex {} at {}",
+    throw Error("{} of {} boundary edges coincide with another boundary edge; the first begins at vertex {} at {}",
                 cut.size(), boundary.size(), first, position_text(mesh, first))
         .hint("`repair` joins them");
 }
@@ -79,11 +81,11 @@ MeshTopology require_usable(const TriangleMesh& mesh, const APatchParams& params
             .hint(fmt::format("the default is {}", APatchParams().apex_factor));
     if (!(params.fairing >= 0 && std::isfinite(params.fairing)))
         throw Error("fairing must be at least 0; it is {}", params.fairing)
-            .hint("0 is none; at 1 fairness weighs about as much as the points");
+            .hint("0 disables fairing; at 1 fairness weighs about as much as the points");
     if (!(params.regularisation >= least_regularisation && params.regularisation <= 1))
         throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation)
-            .hint(
-                fmt::format("the default is {}; larger ones are used where they suit", APatchParams().regularisation));
+            .hint(fmt::format("the default is {}; larger values are used where they predict the points better",
+                              APatchParams().regularisation));
     require_finite(mesh.positions.span(), "vertices");
     const Array<u32> opposites = half_edges::opposites(mesh);
     require_areas(mesh);
@@ -107,7 +109,7 @@ void require_outward(std::span<const Vec3> normals, std::span<const Vec3> of_mes
     }
     if (2 * inward > count)
         throw Error("{} of {} normals point against the triangles at their vertices", inward, count)
-            .hint("the mesh or its normals are inside out; 'normals: mesh' takes those of the triangles");
+            .hint("the mesh or its normals are inside out; 'normals: mesh' computes the normals from the triangles");
 }
 
 CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params,
@@ -123,7 +125,8 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
         throw Error("`normals: points` needs points, and the input `points` is not wired")
             .hint("wire the scan: 'in: {points: scan}', or choose 'normals: mesh'");
     if (source == Normals::points && !has_points)
-        throw Error("`normals: points` needs points; there are none").hint("'normals: mesh' needs none");
+        throw Error("`normals: points` needs points; the input `points` is empty")
+            .hint("'normals: mesh' needs no points");
     const Sectors sectors = sectors_of(mesh);
     std::vector<Vec3> normals = mesh_normals(mesh, sectors);
     if (source == Normals::points) {
@@ -133,7 +136,8 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
         require_outward(given.normals, normals);
         if (given.several > 0)
             context.warn(
-                fmt::format("at {} the corner normals differ where no sharp edge separates them; their mean is taken",
+                fmt::format("at {} the corner normals differ although no sharp edge separates them; the filter uses "
+                            "their mean",
                             count_text(given.several, "vertex", "vertices")));
         // A corner without a normal is the tip of a cone, unless the triangles are folded there.
         const std::vector<std::vector<u32>> corners = corners_of(sectors);
@@ -152,7 +156,7 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
 
 // The surface.
 
-/// The sharp edges between two triangles.
+/// The mesh's sharp edges without those on the boundary.
 Array<Edge> inner_edges(const TriangleMesh& mesh) {
     const Array<u32> opposites = half_edges::opposites(mesh);
     Array<Edge> inner;
@@ -165,7 +169,7 @@ Array<Edge> inner_edges(const TriangleMesh& mesh) {
     return inner;
 }
 
-/// Those too near to the next sheet, and those beside the edges, ascending.
+/// The triangles that are too near to the next sheet, and the triangles beside `edges`; ascending.
 std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     std::vector<u32> triangles = hull.faults.thin;
     for (const u32 e : edges) {
@@ -177,8 +181,8 @@ std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     return triangles;
 }
 
-/// Repairs the mesh until its hull carries a surface: at last every tetrahedron that does not fit is beside a straight
-/// edge, which needs none.
+/// Repairs the mesh until its hull carries a surface. In the end, every edge beside which tetrahedra do not fit is
+/// straight and needs none.
 class Construction {
 public:
     Construction(PatchMesh& mesh, const APatchParams& params, Context& context)
@@ -189,7 +193,7 @@ public:
     Hull hull;  ///< refers to the mesh
     Weights weights;
     Repairs repairs;
-    std::vector<u32> crossing;  ///< triangles where parts of the surface meet others, as the mesh does; ascending
+    std::vector<u32> crossing;  ///< triangles whose parts of the surface intersect other parts; ascending
 
     void run() {
         do {
@@ -200,7 +204,8 @@ public:
     }
 
 private:
-    /// Returns whether the mesh has changed.
+    /// Repairs triangles that are too near to the next sheet, and tetrahedra inside out beside smooth edges. Returns
+    /// whether the mesh has changed.
     bool repair_hull() {
         std::vector<u32> smooth;
         for (const u32 e : hull.faults.inverted)
@@ -223,13 +228,14 @@ private:
         } else {
             is_done_ = true;
             if (!before_ || 2 * triangles.size() <= faults_before_) return false;
-            mesh_ = std::move(*before_);  // bisecting did not help
+            mesh_ = std::move(*before_);  // bisection did not help
             repairs = repairs_before_;
         }
         return true;
     }
 
-    /// The same. Without a change the weights are final.
+    /// Computes the weights of the hull. Repairs sharp edges whose creases leave the tetrahedra beside them. Returns
+    /// whether the mesh has changed.
     bool repair_creases() {
         weights = make_weights(hull, params_.curvature, context_);
         doubtful_ = doubtful_edges(weights.patches, context_);
@@ -248,8 +254,8 @@ private:
         return smooth_edges(mesh_, creases, repairs) > 0;
     }
 
-    /// The same: a crease that leaves the tetrahedra beside its edge has less room to do so over a shorter one. Undone
-    /// unless that repairs half of them.
+    /// Bisects the edges of these creases, because the crease of a shorter edge deviates less from it. Undoes all
+    /// bisections unless they repair at least half of the creases. Returns whether the mesh has changed.
     bool bisect_creases(std::span<const Edge> creases) {
         if (is_aligned_ || are_creases_bisected_) return false;
         if (crease_rounds_ == 0) {
@@ -270,7 +276,8 @@ private:
         return true;
     }
 
-    /// The same: where nothing else helps the surface follows the mesh.
+    /// Gives the vertices at the remaining defects tips, or makes the surface follow the mesh there. Returns whether
+    /// the mesh has changed.
     bool loosen_rest() {
         is_loosening_ = true;
         std::vector<Edge> edges, half_pointed;
@@ -282,7 +289,8 @@ private:
                 (is_half_pointed ? half_pointed : edges).push_back(make_edge(edge.a, edge.b));
             }
         if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
-        // A crease that leaves a tip along its edge is straight up to the middle, so that its other end needs no tip.
+        // A crease that begins at a tip becomes straight up to the middle of its edge. The other end of the edge then
+        // needs no tip.
         if (!half_pointed.empty()) {
             repairs.bisected += bisect_edges(mesh_, half_pointed, Middle::of_segment);
             return true;
@@ -305,9 +313,9 @@ private:
     const APatchParams& params_;
     Context& context_;
     bool is_turned_ = false, is_aligned_ = false, is_done_ = false, is_loosening_ = false;
-    std::vector<u32> doubtful_;  ///< edges
+    std::vector<u32> doubtful_;  ///< see doubtful_edges()
     std::size_t rounds_ = 0, faults_before_ = 0;
-    std::optional<PatchMesh> before_;  ///< the first bisection
+    std::optional<PatchMesh> before_;  ///< the mesh before the first bisection
     Repairs repairs_before_;
     bool are_creases_bisected_ = false;
     std::size_t crease_rounds_ = 0, creases_before_ = 0;
@@ -315,8 +323,8 @@ private:
     Repairs repairs_before_creases_;
 };
 
-/// Takes the changes of a fit back where parts of the surface meet others since, or weights got a wrong sign by that.
-/// `crossing` are the triangles where parts met before.
+/// Undoes changes of a fit where they made parts of the surface intersect, or gave weights a wrong sign. `crossing` are
+/// the triangles whose parts intersected before the fit.
 class Uncrossing {
 public:
     Uncrossing(Hull& hull, const Weights& before, std::span<const u32> crossing, Curvature curvature, Context& context)
@@ -359,7 +367,7 @@ private:
         return faulty;
     }
 
-    /// By the neighbours.
+    /// Adds the neighbours of the triangles that are taken back.
     void widen() {
         const std::vector<bool> before = is_taken_back_;
         for (const HullEdge& edge : hull_.edges)
@@ -376,7 +384,8 @@ private:
     std::vector<std::size_t> wrong_before_;
 };
 
-/// Fits the slopes, and measures. The weights are those of the hull as it is, without violations at creases.
+/// Fits the slopes of the construction's hull, and measures the distances of the points. Returns the new weights. Pre:
+/// the construction's weights are those of its hull, without violations at creases.
 Weights fit_and_measure(Construction& construction, const PointCloud* points, const APatchParams& params,
                         APatchResult& result, Context& context) {
     Hull& hull = construction.hull;
@@ -417,8 +426,8 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
     const Repairs& repairs = result.repairs;
     if (repairs.replaced > 0)
         context.warn(
-            fmt::format("{} replaced, because tetrahedra are inside out with them, a triangle opposes them, or a "
-                        "crease leaves its edge",
+            fmt::format("{} replaced because of an opposing triangle, tetrahedra inside out, or a crease that leaves "
+                        "its edge",
                         count_text(repairs.replaced, "normal is", "normals are")));
     if (repairs.bisected > 0)
         context.warn(
@@ -428,11 +437,12 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
         context.warn(fmt::format("{} sharp, because the mesh is folded there",
                                  count_text(repairs.creased, "edge becomes", "edges become")));
     if (repairs.smoothed > 0)
-        context.warn(fmt::format("{} smooth, because no crease follows them",
+        context.warn(fmt::format("{} smooth, because no crease fits there",
                                  count_text(repairs.smoothed, "blunt sharp edge becomes", "blunt sharp edges become")));
     if (repairs.pointed > 0) {
         const std::string text = fmt::format(
-            "at {} of {} vertices no smooth surface fits: it has a tip there, and follows the mesh at {}",
+            "no smooth surface fits at {} of {} vertices: the surface has a tip at each of them, and follows the mesh "
+            "at {}",
             repairs.pointed, counts.vertices + repairs.bisected, count_text(repairs.straightened, "edge", "edges"));
         if (static_cast<double>(repairs.pointed) >
             most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
@@ -445,23 +455,23 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
                                  params.fit ? "the surface is not fitted" : "no distance is measured"));
     else if (points && static_cast<double>(result.left_out) > most_left_out * static_cast<double>(points->size()))
         context.doubt(fmt::format(
-            "{} of {} in no tetrahedron near the surface and {} not {}: are mesh and points of one object, in one "
-            "position?",
+            "{} of {} in no tetrahedron near the surface and {} not {}; check that the mesh and the points show the "
+            "same object in the same position",
             result.left_out, count_text(points->size(), "point is", "points are"),
             by_count(result.left_out, "does", "do"), params.fit ? "count in the fit" : "count"));
     if (!crossing.empty())
-        context.doubt(fmt::format("parts of the surface intersect at {}, where the mesh leaves no room for another one",
+        context.doubt(fmt::format("parts of the surface intersect at {}, because the mesh intersects itself there",
                                   count_text(crossing.size(), "triangle", "triangles")));
     if (result.fit && result.fit->rms > most_worse * result.fit->rms_to_mesh + rounding * surface_box(mesh).diagonal())
         context.doubt(fmt::format(
             "the points are farther from the surface (rms {0:.3g} {2}) than from the mesh (rms {1:.3g} {2})",
             result.fit->rms, result.fit->rms_to_mesh, symbol(mesh.frame.unit)));
     if (result.sign_violations > 0)
-        context.doubt(fmt::format("{} the wrong sign: the surface may have several sheets there",
-                                  count_text(result.sign_violations, "weight has", "weights have")));
+        context.doubt(fmt::format("the surface may have several sheets at {} with a wrong sign",
+                                  count_text(result.sign_violations, "edge or weight", "edges or weights")));
     if (!counts.closed) return;
     if (signed_volume(mesh.positions, mesh.triangles) < 0)
-        context.doubt("the mesh is inside out: inside and outside are exchanged");
+        context.doubt("the mesh is inside out: the result exchanges inside and outside");
 }
 
 void report(const APatchResult& result, Context& context) {
@@ -495,7 +505,7 @@ void report(const APatchResult& result, Context& context) {
 
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context) {
     if (mesh.triangles.empty())
-        throw Error("needs a mesh with triangles; it has {} vertices and none", mesh.positions.size());
+        throw Error("needs a mesh with triangles; it has {} vertices and no triangles", mesh.positions.size());
     const MeshTopology counts = require_usable(mesh, params);
     if (points) {
         require_finite(points->positions.span());

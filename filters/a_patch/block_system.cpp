@@ -12,12 +12,12 @@ namespace {
 
 constexpr double accuracy = 1e-8;  // relative error of the solution, in the norm of the matrix
 constexpr int most_steps = 2000;
-constexpr double worthwhile = 1e-3;  // share of the squared change in the data's norm that a larger weight must gain
-constexpr double most_times = 10;  // the geometric mean, roughly, that a row counts
-constexpr double enough_points = 2000;  // to choose a weight
+constexpr double worthwhile = 1e-3;  // a larger weight must lower the error by this share of the squared solution
+constexpr double most_times = 10;  // largest error of a row, as a multiple of the approximate geometric mean near it
+constexpr double enough_points = 2000;  // near a row, to choose its weight
 
-// A logarithm to base 2 that is linear between powers of 2, and its inverse: the results of std::log and std::exp
-// depend on the processor.
+// rough_logarithm() is a logarithm to base 2 that is linear between powers of 2; rough_power() is its inverse. std::log
+// and std::exp give results that depend on the processor.
 
 double rough_logarithm(double number) {
     int exponent;
@@ -133,7 +133,7 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
                                  const std::function<void(std::vector<BlockSystem::Vector>&)>& restrict,
                                  const Execution& execution) {
     const std::size_t size = halves[0].size();
-    // r rings have about 10 r² rows.
+    // r rings around a row contain about 10 r² rows.
     const double per_row = static_cast<double>(points) / static_cast<double>(size);
     const auto rings = static_cast<int>(std::clamp(std::ceil(std::sqrt(enough_points / 10 / per_row)), 2.0, 20.0));
     const auto near = [&](std::vector<double> values) {
@@ -148,8 +148,9 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
         system.solve(x, execution);
         return x;
     };
-    // Solutions with the least weight. A solution's squared error is, up to a constant, its difference from the data's
-    // own solution in the norm of the data's matrix. The same holds for the part near a row.
+    // The solutions with the smallest weight stand for the data's own solutions. Up to a constant, a solution's squared
+    // error is its squared difference from the data's own solution, in the norm of the data's matrix. This also holds
+    // for the summands of the rows near one row.
     const std::array<Solution, 2> least{solution(0, weights.front()), solution(1, weights.front())};
     std::vector<double> size_of_least(size, 0.0), best(size, weights.front()), least_error;
     for (std::size_t half = 0; half < 2; ++half) {
@@ -167,8 +168,8 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
             for (std::size_t row = 0; row < size; ++row) error[row] += found[row];
         }
     }
-    // A row with much more than the geometric mean near it counts as much as that, so that a few with outliers do not
-    // decide for others.
+    // The error of a row counts at most as a multiple of the geometric mean near it. Otherwise a few rows with outliers
+    // would decide for their neighbours.
     std::vector<double> largest = size_of_least, exponents(size), used(size);
     for (std::size_t row = 0; row < size; ++row) {
         for (const auto& error : errors) largest[row] = std::max(largest[row], std::abs(error[row]));

@@ -20,29 +20,30 @@ public:
     using Vector = Eigen::Vector2d;
     using Matrix = Eigen::Matrix2d;
 
-    /// `pairs`: the rows and columns of the blocks that may differ from 0, in any order, several times; both of (a, b)
-    /// and (b, a), and every (a, a).
+    /// `pairs` contains (row, column) of every block that may differ from 0, in any order; duplicates are allowed. It
+    /// must contain every (a, a), and (b, a) for every (a, b).
     BlockSystem(std::size_t size, std::vector<std::pair<u32, u32>> pairs);
 
     void clear();
-    /// Pre: one pattern.
+    /// Pre: both systems were made from the same pairs.
     void add(const BlockSystem& other);
     void add_to_diagonal(double value);
     std::size_t size() const { return right_.size(); }
     Matrix& block(u32 row, u32 column);
     Vector& right(u32 row) { return right_[row]; }
 
-    /// Conjugate gradients, preconditioned by the diagonal blocks, starting at `x`. Unknowns without a connection to a
-    /// right-hand side stay exactly 0 if they are. Cost: some hundred multiplications at most.
+    /// Solves by conjugate gradients, preconditioned by the diagonal blocks, starting at `x`. Unknowns that are 0, and
+    /// have no connection to a right-hand side, stay exactly 0. Cost: at most some hundred products of the matrix and a
+    /// vector.
     void solve(std::vector<Vector>& x, const Execution& execution) const;
 
-    /// x · matrix · x as a sum over the rows.
+    /// The summands of x · matrix · x, one for each row.
     std::vector<double> energies(const std::vector<Vector>& x) const;
 
     /// For each row, the sum of the values over the rows that its equation contains.
     std::vector<double> sums_of_neighbours(std::span<const double> values) const;
 
-    /// Right-hand side of the row's equation for its own unknowns, with `x` for the others.
+    /// The right-hand side of a row's equation, minus the terms of all other rows' unknowns with their values in `x`.
     Vector remainder(u32 row, const std::vector<Vector>& x) const;
 
 private:
@@ -55,10 +56,10 @@ private:
     std::vector<Vector> right_;
 };
 
-/// Chooses from `weights`, for each row, the weight with which each half of the data best predicts the other half near
-/// that row, because noise varies. "Near" means two rings of neighbouring rows, or more, up to 20, until about 2000
-/// points are reached. Ties: the first of `weights`. `add_prior` adds the prior of a weight to a half; `restrict` moves
-/// a solution to an admissible one.
+/// For each row, chooses from `weights` the weight with which each half of the data best predicts the other half near
+/// that row. The choice differs between rows because noise varies. "Near" means within 2 to 20 rings of neighbouring
+/// rows, enough for about 2000 of the `points` points. `add_prior` adds the prior with the given weight to a half.
+/// `restrict` moves a solution to an admissible one. Ties: the first of `weights`.
 std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::size_t points,
                                  std::span<const double> weights,
                                  const std::function<void(BlockSystem&, double)>& add_prior,

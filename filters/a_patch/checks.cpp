@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t chunk = 1024;
 
-/// Samples tetrahedra with two functions: whether every line from the mesh to an apex, or to the segment between two,
-/// meets the surface once, and whether a triangle's own function alone sets the surface where the tetrahedron meets the
-/// triangle's other thirds.
+/// Samples tetrahedra with two functions. Checks whether every line from the mesh to an apex, or to the segment between
+/// two apexes, meets the surface once. Also checks whether a triangle's own function alone determines the surface where
+/// the tetrahedron meets the triangle's other thirds.
 class CreaseCheck {
 public:
     explicit CreaseCheck(const PatchComplex& patches) : patches_(patches) {}
@@ -32,9 +32,10 @@ public:
     }
 
 private:
-    static constexpr int steps = 16, parts = 32;  // samples of a line, and lines between two apexes
+    static constexpr int steps = 16, parts = 32;  // intervals of a line, and of the segment between two apexes
     static constexpr double rounding = 1e-12;  // share of the largest weight
-    /// Shares of an edge, from either end, at which lines are sampled: creases deviate most near the ends.
+    /// Distances from either end of an edge at which lines begin, as shares of its length. Creases deviate most near
+    /// the ends.
     static constexpr std::array shares = {0.001, 0.003, 0.01, 0.02, 0.04, 0.08, 0.12, 0.17,
                                           0.21,  0.25,  0.29, 0.33, 0.37, 0.42, 0.46, 0.5};
 
@@ -69,7 +70,7 @@ private:
         double at_point_;
         std::array<double, 2> towards_;
         std::array<double, 3> beyond_;
-        const Cubic& between_;  ///< along the segment
+        const Cubic& between_;  ///< weights of the function on the segment between the apexes
     };
 
     double largest_weight(u32 row) const {
@@ -79,7 +80,7 @@ private:
         return largest;
     }
 
-    /// Whether a function with these weights turns from negative to positive at most once.
+    /// Whether the weights, times `sign`, change their sign at most once: from negative to positive.
     static bool rises(const Cubic& c, double sign) {
         bool is_above = false;
         for (const double weight : c) {
@@ -89,7 +90,8 @@ private:
         return true;
     }
 
-    /// Whether the combined function, seen outwards, is above 0 in the end, and never below 0 after it was above.
+    /// Whether the combined function, times the sign of the side, becomes positive along the line and does not become
+    /// negative afterwards. `one` and `other` are the weights of the two functions on the line.
     bool is_single(u32 row, const Cubic& one, const Cubic& other, double least) const {
         const double sign = patches_.sides[row] == 1 ? 1 : -1;
         const auto combined = [&](double a, double b) {
@@ -121,8 +123,8 @@ private:
         return true;
     }
 
-    /// Near an end of a curved edge the function is the tangent planes': its sign must be the side's on the segment
-    /// between the apexes.
+    /// Near an end of a curved sharp edge, the function is that of the two tangent planes. On the segment between the
+    /// apexes it must have the sign of the side.
     bool is_sound_end(u32 row, int corner) const {
         const PatchWeights& w = patches_.weights[row];
         const PatchWeights& partner = patches_.weights[patches_.partners[row]];
@@ -139,7 +141,7 @@ private:
         return true;
     }
 
-    /// Pre: of the row and its partner this one is the continuation.
+    /// Pre: `row` is the continuation, and its partner is the tetrahedron over the triangle.
     bool is_sound_third(u32 row) const {
         constexpr int grid = 12;
         const double least = rounding * largest_weight(row);
@@ -157,7 +159,8 @@ private:
             for (const double share : {0.0, 0.25, 0.5, 0.75, 0.95}) {
                 Barycentric from(1 - share, 0, 0, 0);
                 from[corner] = share;
-                if (side * patch_value(patches_.weights[own], from) > 0) continue;  // seen from the other side
+                // The surface is on the other side of the mesh.
+                if (side * patch_value(patches_.weights[own], from) > 0) continue;
                 const auto hit = patch_hit(patches_.weights[own], from, apex);
                 if (!hit || sign * patch_value(patches_.weights[row], (1 - *hit) * from + *hit * apex) > least)
                     return false;
@@ -174,8 +177,8 @@ struct SharedFace {
     auto operator<=>(const SharedFace&) const = default;
 };
 
-/// Coordinates in a tetrahedron of a point of one of its faces. A position would be off the face by rounding, which
-/// matters in flat tetrahedra.
+/// The coordinates in a tetrahedron of a point with coordinates `share` on one of its faces. Rounding of a position
+/// would move the point off the face, which matters in flat tetrahedra.
 Barycentric coordinates_on(const std::array<u32, 4>& tet, const std::array<u32, 3>& face, const Vec3& share) {
     Barycentric at = Barycentric::Zero();
     for (std::size_t i = 0; i < 4; ++i)
@@ -193,8 +196,8 @@ std::size_t inverted_tets(const PatchComplex& patches) {
         const Vec3& o = patches.positions[t[0]];
         const double volume =
             (patches.positions[t[1]] - o).cross(patches.positions[t[2]] - o).dot(patches.positions[t[3]] - o);
-        // From the base point corners i, j and the apex turn the other way than from an edge point, and inside the
-        // other way than outside.
+        // Seen from a base point, corners i, j and the apex turn in the opposite direction than seen from an edge
+        // point. The direction is also opposite inside and outside.
         const bool is_over_face =
             patches.kinds[row] == PatchKind::face || patches.kinds[row] == PatchKind::continuation;
         const bool is_positive = is_over_face == (patches.sides[row] == 1);

@@ -26,17 +26,17 @@ constexpr std::size_t rows_at_once = 256;  // tetrahedra
 constexpr int rounds = 3;
 constexpr double most_regularisation = 200;
 constexpr double at_vertex = 1e-9;  // barycentric
-constexpr double least_gradient = 0.5;  // a point where F is flatter is not near the surface
-constexpr double least_share = 0.1;   // least share of an edge's value at an apex that is kept
+constexpr double least_gradient = 0.5;  // lower bound of |grad F|: F is steeper near the surface
+constexpr double least_share = 0.1;   // smallest share of the default value at an apex that an edge's function keeps
 constexpr int most_sweeps = 200;
-constexpr double relaxation = 1.5;  // a third of the sweeps that 1 needs
-constexpr double enough = 1e-6;  // largest change in the last sweep, as a share of the slopes' length
+constexpr double relaxation = 1.5;  // needs a third of the sweeps of a relaxation by 1
+constexpr double enough = 1e-6;  // sweeps end when no slope changes more
 constexpr double smaller = 0.6;
 constexpr int most_reductions = 20;
 
 // Signs.
 
-/// along · x >= least.
+/// The condition along · x >= least.
 struct Limit {
     Vector2 along;
     double least;
@@ -50,7 +50,7 @@ bool is_within(const Limits& limits, const Vector2& x) {
     });
 }
 
-/// The least of x · matrix · x / 2 - right · x within the limits, which 0 satisfies.
+/// The x within the limits for which x · matrix · x / 2 - right · x is smallest. Pre: 0 is within the limits.
 Vector2 least_within(const Matrix2& matrix, const Vector2& right, const Limits& limits) {
     const Vector2 free = matrix.inverse() * right;
     if (is_within(limits, free)) return free;
@@ -80,7 +80,8 @@ Vector2 least_within(const Matrix2& matrix, const Vector2& right, const Limits& 
 
 // Fairness.
 
-/// A third of the mean gradient of the quadrics of an inner edge's two triangles, at the middle of the edge; by edge.
+/// By edge, for inner edges: a third of the mean gradient of the quadrics of its two triangles, at the middle of the
+/// edge.
 std::vector<Vec3> fair_slopes(const Hull& hull, Curvature curvature) {
     std::vector<Vec3> slopes(hull.edges.size(), Vec3::Zero());
     for (u32 f = 0; f < hull.faces.size(); ++f) {
@@ -97,7 +98,7 @@ std::vector<Vec3> fair_slopes(const Hull& hull, Curvature curvature) {
     return slopes;
 }
 
-/// The edges that a tetrahedron may depend on together.
+/// The pairs of edges on whose slopes one tetrahedron may depend.
 std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
     std::vector<std::pair<u32, u32>> pairs;
     const auto add = [&](std::span<const u32> edges) {
@@ -158,7 +159,7 @@ public:
 
 private:
     struct Row {
-        std::size_t tet, begin, end;  ///< points
+        std::size_t tet, begin, end;  ///< a tetrahedron, and the range of the points in it
     };
 
     void find_rows() {
@@ -171,7 +172,8 @@ private:
     struct Sample {
         double value;
         double slope;  ///< |grad F|
-        Barycentric foot;  ///< about the nearest point of the surface; for an outlier, a point on the way there
+        /// Approximately the nearest point of the surface. For an outlier, a point on the way there.
+        Barycentric foot;
         double distance() const { return std::abs(value) / slope; }
     };
     Sample sample(const PatchCell& cell, std::size_t point, double most) const {
@@ -183,7 +185,7 @@ private:
         return {value, slope, cell.coordinates(cell.point(at) - way / slope * gradient)};
     }
 
-    /// What points of one tetrahedron add to the system.
+    /// The contribution of the points in one tetrahedron to the system.
     struct Part {
         std::array<u32, SlopeDependence::most_edges> edges;
         std::size_t count;
@@ -200,7 +202,7 @@ private:
         }
     };
 
-    /// The points' sums; in every tetrahedron they go to both halves by turns.
+    /// Adds the contributions of the points. In every tetrahedron, the points go to the two halves alternately.
     void add_points(std::array<BlockSystem, 2>& halves) const {
         const std::vector<double> most = outlier_distances();
         using Parts = std::vector<std::array<Part, 2>>;
@@ -233,8 +235,8 @@ private:
         }
         std::array<Part, 2> parts{none, none};
         for (std::size_t p = row.begin; p < row.end; ++p) {
-            // At the foot the derivative of F / |grad F| is that of F alone; at the point itself a flatter F would
-            // seem nearer.
+            // At the foot point F is 0, so the derivative of F / |grad F| only needs the derivative of F. At the point
+            // itself, a flatter F would count as a smaller distance.
             const Sample here = sample(cell, p, most);
             const auto derivatives = dependence.derivatives(here.foot);
             for (std::size_t n = 0; n < none.count; ++n)
@@ -248,7 +250,7 @@ private:
         return parts;
     }
 
-    /// The mean diagonal element of the points' sums.
+    /// Sets `scale_` to the mean diagonal element of the points' matrix over the free components.
     void set_scale() {
         double trace = 0, count = 0;
         for (u32 e = 0; e < system_.size(); ++e) {
@@ -258,7 +260,8 @@ private:
         scale_ = trace > 0 ? trace / count : 1;
     }
 
-    /// By triangle. Points at a vertex do not count: the surface passes through vertices anyway.
+    /// By triangle: the distance beyond which its points are outliers. Points at a vertex do not count, because the
+    /// surface passes through the vertices anyway.
     std::vector<double> outlier_distances() const {
         std::vector<double> found(points_.size());
         std::vector<u32> triangles(points_.size());
@@ -305,7 +308,8 @@ private:
         }
     }
 
-    /// An edge's function keeps its sign, and a share of its value, at the apexes of its triangles.
+    /// Limits each edge's changes so that its function keeps its sign, and a share of its value, at the apexes of the
+    /// edge's triangles.
     void set_limits() {
         for (u32 e = 0; e < hull_.edges.size(); ++e) {
             const HullEdge& edge = hull_.edges[e];
@@ -325,8 +329,8 @@ private:
         }
     }
 
-    /// The exact solution if all edges are within their limits, else that of sweeps over the edges, each of which gets
-    /// its best slope within its limits.
+    /// Finds the exact solution. If it violates limits, sweeps over the edges instead; each edge gets its best slope
+    /// within its limits.
     void solve() {
         system_.solve(changes_, execution_);
         bool is_sound = true;
@@ -346,7 +350,7 @@ private:
         }
     }
 
-    /// Shortens the change of an edge that is beyond its limits. Returns whether it was within.
+    /// Shortens an edge's change that is beyond the edge's limits. Returns whether the change was within them.
     bool move_within_limits(u32 e, Vector2& change) const {
         if (is_within(limits_[e], change)) return true;
         double share = 1;
@@ -364,7 +368,7 @@ private:
         weights_ = make_weights(hull_, curvature_, execution_);
     }
 
-    /// The edges with changes on which violations depend that the default slopes did not have.
+    /// Marks the changed edges that cause violations; violations that the default slopes had do not count.
     std::vector<bool> wrong_edges() const {
         std::vector<bool> is_wrong(changes_.size(), false);
         const auto add = [&](u32 e) { is_wrong[e] = changes_[e] != Vector2::Zero(); };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Fits the slopes of a hull's edges to data points, and makes them fair. This step keeps the vertices and their
-/// gradients (normal_fit.hpp turns those before), and the equal gradients where tetrahedra meet, since these hold for
-/// any slopes.
+/// Fits the slopes of a hull's edges to data points, and makes them fair. The vertices and their gradients stay as they
+/// are; normal_fit.hpp fits the gradients before. The gradients of neighbouring tetrahedra stay equal, because they are
+/// equal for any slopes.
 ///
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 5; the distance is that of Taubin 1991, "Estimation of
 /// planar curves, surfaces, and nonplanar space curves defined by implicit equations".
@@ -16,64 +16,66 @@
 
 namespace scanmill::a_patches {
 
-/// Points with the tetrahedra they are in, ordered by tetrahedron, then as given.
+/// Points with the tetrahedra that contain them; ordered by tetrahedron, then by row.
 struct LocatedPoints {
     struct Point {
         u32 row;  ///< row among the given points
-        u32 tet;  ///< if two functions exist, the one that is F there
+        u32 tet;  ///< if two rows share the tetrahedron, the row whose function is F at the point
         Barycentric at;
     };
     std::vector<Point> points;
-    std::size_t left_out = 0;  ///< in no tetrahedron
+    std::size_t left_out = 0;  ///< number of points in no tetrahedron
 };
 
 /// Cost: O(log n) per point, 2 to 4 us.
 LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution);
 
 struct FitParams {
-    /// Whether the slopes follow the points; else they are only made fair.
+    /// Whether the slopes follow the points. If not, they are only made fair.
     bool to_points = true;
     double fairing = 0;  ///< at least 0
-    double regularisation = 1e-3;  ///< the least weight, above 0
+    double regularisation = 1e-3;  ///< the smallest weight that an edge can choose, above 0
 };
 
 struct FitResult {
     Weights weights;
-    std::optional<double> regularisation;  ///< the median of the weights used, if one was
+    /// The median over the edges of the weights used; empty if nothing was fitted or made fair.
+    std::optional<double> regularisation;
 };
 
 /// Minimises, over the components of the slopes that the vertices leave free,
-///     sum of (F / |grad F|)² over the points + s · (regularisation · |change|² + fairing · unfairness),
-/// where s is the mean diagonal element of the first sum's matrix; 1 without points. Points whose distance is above 3
-/// times the median near their triangle count less (Huber). Derivatives are those at the foot points. Gradients, foot
-/// points and the points' weights follow the solution, 3 times. Every function f(a, b, .) of an edge keeps at least a
-/// tenth of its value at each apex; where more weights of a tetrahedron than by default get a wrong sign, the changes
-/// of the edges around are reduced.
+///     sum of (F / |grad F|)² over the points + s · (regularisation · |change|² + fairing · unfairness).
+/// s is the mean diagonal element of the first sum's matrix, or 1 without points. Points whose distance is above 3
+/// times the median near their triangle count less (Huber). Derivatives are taken at the foot points. The minimisation
+/// is done 3 times; each time, gradients, foot points and the points' weights follow from the last solution.
 ///
-/// Each edge chooses its `regularisation`: the given value times a power of 10, below 200, with which each half of the
-/// points best predicts the distances of the other half near the edge. Few or noisy points change the slopes less.
+/// At each apex, the function f(a, b, .) of an edge keeps at least a tenth of its default value. If a tetrahedron gets
+/// more weights of a wrong sign than with the default slopes, the changes of the edges around it are reduced.
 ///
-/// Sets the slopes of `hull` and returns its weights. `weights` are those of the hull as it is. Slopes without points
-/// near them and without fairing keep their bits. Bytes do not depend on the number of threads.
+/// Each edge chooses its `regularisation`: the given value times a power of 10, below 200. It chooses the one with
+/// which each half of the points best predicts the distances of the other half near the edge. Therefore few or noisy
+/// points change the slopes less.
+///
+/// Sets the slopes of `hull` and returns its new weights. Pre: `weights` are those of `hull` before. Without fairing,
+/// slopes without points near them keep their bits. Bytes do not depend on the number of threads.
 /// Cost: about 1 us per point and 100 us per triangle.
 ///
-/// `violating_edges`: the sharp edges at which a surface is not sound; none with the slopes of `hull` as it is.
+/// `violating_edges` returns the sharp edges at which a surface is not sound. Pre: it returns none for `weights`.
 FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
               const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution);
 
-/// Sum over the smooth inner edges of the squared difference between the edge's slope and the mean of the gradients of
-/// its two triangles' quadrics at the middle of the edge, without the component along the edge; gradients have
-/// length 1.
+/// Sum over the smooth inner edges of |slope - g|², without the component along the edge. g is a third of the mean
+/// gradient of the quadrics of the edge's two triangles, at the middle of the edge.
 double unfairness(const Hull& hull, Curvature curvature);
 
-/// Distances without sign.
+/// Unsigned distances of the located points, in their order.
 struct PointDistances {
-    /// To the foot point that is found from the nearest point of the mesh, or |F| / |grad F| where the way leads over
-    /// the boundary of an open surface.
+    /// Distance from the foot point, which is sought from the nearest point of the mesh. It is |F| / |grad F| where
+    /// that search crosses the boundary of an open surface.
     std::vector<double> to_surface;
     std::vector<double> to_mesh;
 };
-/// Distances of the located points, in their order.
+/// Measures the distances of the located points from the surface and from the mesh.
 PointDistances distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
                          const LocatedPoints& located, Execution& execution);
 

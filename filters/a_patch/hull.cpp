@@ -14,14 +14,14 @@ namespace scanmill::a_patches {
 
 namespace {
 
-constexpr double share_of_radius = 0.15;  // added to a height
-constexpr double low_factor = 1.05, low_share = 0.02;  // the least height that an apex is lowered to
+constexpr double share_of_radius = 0.15;  // share of the inradius that is added to a height
+constexpr double low_factor = 1.05, low_share = 0.02;  // see low()
 constexpr double higher_factor = 1.4, higher_share = 0.05;
 constexpr int most_rounds = 12;
 constexpr double share_of_gap = 0.45;  // share of the distance to the next sheet
 constexpr double least_sine = 0.1;  // between two undivided triangles
 constexpr double most_change = 0.1;  // largest change of an edge's gradient, whose length is 1
-constexpr double most_cosine_of_straight = 1e-12;  // rounding: between an edge and normals perpendicular to it
+constexpr double most_cosine_of_straight = 1e-12;  // rounding of the cosine between perpendicular edge and normal
 constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
 constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
 constexpr double least_turn = 1e-9;  // sines of angles between normals
@@ -42,7 +42,8 @@ HullFace face_of(const std::array<Vec3, 3>& p) {
     return face;
 }
 
-/// The slope of an edge whose value is exact for quadrics.
+/// The default slope of an edge, which is exact for quadrics. `d` goes from end a to end b; `na` and `nb` are the
+/// normals there.
 Vec3 default_slope(const Vec3& d, const Vec3& na, const Vec3& nb) {
     const Vec3 sum = na + nb, mean = sum / 6;
     return mean - d * ((mean.dot(d) + sum.dot(d) / 3) / d.squaredNorm());
@@ -52,8 +53,8 @@ bool are_adjacent(const Triangle& one, const Triangle& other) {
     return std::ranges::any_of(one, [&](u32 v) { return std::ranges::find(other, v) != other.end(); });
 }
 
-/// Whether at an end of a curved crease the segment between the apexes passes under the line where the tangent planes
-/// meet. Then the surface would end there.
+/// Whether, at an end of a curved crease, the segment between the apexes passes under the line in which the two tangent
+/// planes meet. The surface would end there.
 bool passes_under(const Hull& hull, const HullEdge& edge, Side side) {
     if (!edge.is_sharp || edge.is_straight || edge.is_convex != (side == outside)) return false;
     const std::array<u32, 2> faces{edge.first, edge.second};
@@ -66,7 +67,7 @@ bool passes_under(const Hull& hull, const HullEdge& edge, Side side) {
             for (std::size_t i = 0; i < 2; ++i)
                 height[of][i] = sign_of(side) * hull.at_corner(faces[of], corner, apexes[i]);
         }
-        // Where both are below on a part of the segment, their lines meet below.
+        // True if a part of the segment is below both tangent planes.
         if (height[0][1] < 0 && height[1][0] < 0 && height[0][0] * height[1][1] <= height[0][1] * height[1][0])
             return true;
     }
@@ -84,7 +85,8 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
     const double length = std::sqrt(u.squaredNorm() * v.squaredNorm());
     const double sine = sign_of(side) * d.dot(u.cross(v)), cosine = u.dot(v);
     if (sine <= 0) {
-        // The apexes lean towards each other, so only a gap that begins below 180 degrees can close.
+        // The angle is negative or above 180 degrees. It can be negative only where the triangles enclose less than 180
+        // degrees, because apexes lie over the interiors of their triangles.
         const Vec3& base = hull.faces[edge.second].base;
         const bool is_above = sign_of(side) * hull.faces[edge.first].normal.dot(base - a) > 0;
         return is_above ? Opening::too_small : Opening::too_large;
@@ -115,7 +117,7 @@ public:
         const TriangleTree tree(hull_.positions, hull_.triangles, execution_.threads());
         limit_heights(tree);
         open_gaps();
-        limit_heights(tree);  // only those that were raised
+        limit_heights(tree);  // again, for the apexes that open_gaps() raised
         find_faults();
         return std::move(hull_);
     }
@@ -153,7 +155,7 @@ private:
         }
     }
 
-    /// Between two singular vertices the triangles give the slope.
+    /// Sets the slope of an edge between two vertices without normals from the normals of its triangles.
     void set_slope_without_normals(HullEdge& edge) {
         const Vec3& first = hull_.faces[edge.first].normal;
         const Vec3& second = hull_.faces[edge.second == HullEdge::none ? edge.first : edge.second].normal;
@@ -172,7 +174,7 @@ private:
                            std::ranges::all_of(
                                std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
                                [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
-        // The normals turn apart at a convex edge.
+        // At a convex edge the normals of the two faces diverge.
         const double turn = d.dot(of_first[0].cross(of_second[0]) + of_first[1].cross(of_second[1])) / d.norm();
         if (std::abs(turn) > least_turn) {
             edge.is_convex = turn > 0;
@@ -184,12 +186,12 @@ private:
 
     // Undivided triangles.
 
-    /// The corner opposite to edge `e`, as seen from its a.
+    /// The vector from end a of edge `e` to the opposite corner of face `f`.
     Vec3 opposite(u32 e, u32 f) const {
         return hull_.positions[hull_.triangles[f][(hull_.number_in(e, f) + 2) % 3]] - hull_.positions[hull_.edges[e].a];
     }
 
-    /// Leaves triangles undivided unless an edge then has no slope, or one far from its default.
+    /// Leaves a triangle undivided unless one of its edges would then have no slope, or a slope far from its default.
     void undivide() {
         std::vector<Vec3> defaults;
         for (const HullEdge& edge : hull_.edges) defaults.push_back(edge.slopes[0]);
@@ -210,8 +212,8 @@ private:
         }
     }
 
-    /// Sets the slope nearest to its default that the undivided triangles at the edge allow. Returns whether it is
-    /// sound.
+    /// Sets an edge's slope to the one nearest to its default that the undivided triangles at the edge allow. Returns
+    /// whether such a slope exists and is usable.
     bool set_slope(u32 e, const Vec3& by_default) {
         HullEdge& edge = hull_.edges[e];
         edge.slopes.fill(by_default);
@@ -243,7 +245,8 @@ private:
         });
     }
 
-    /// Divides triangles, those with the most bad edges first, until every bad edge has a newly divided one.
+    /// Divides triangles until every bad edge has a newly divided triangle; triangles with the most bad edges come
+    /// first.
     void divide(const std::vector<u32>& bad) {
         std::vector<u32> count(hull_.faces.size(), 0), candidates;
         std::vector<bool> is_bad(hull_.edges.size(), false);
@@ -268,8 +271,8 @@ private:
         for (std::size_t f = 0; f < hull_.faces.size(); ++f) {
             HullFace& face = hull_.faces[f];
             for (const Side side : both_sides) {
-                // The signed values at base ± h normal must be positive: h > -value at the base / slope along the
-                // normal.
+                // The signed values at the apex, which is base ± h normal, must be positive. Therefore h > -(value at
+                // the base) / (slope along the normal).
                 double least = 0;
                 for (std::size_t i = 0; i < 3; ++i) {
                     const double at_corner = -sign_of(side) * hull_.at_corner(f, i, face.base);
@@ -284,7 +287,7 @@ private:
         }
     }
 
-    /// An apex stays below the next sheet that the line from its base point meets.
+    /// Keeps each apex below the next sheet that the line from its base point through the apex meets.
     void limit_heights(const TriangleTree& tree) {
         for_each_chunk(execution_.threads(), hull_.faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
             execution_.check_cancelled();
@@ -310,7 +313,7 @@ private:
         });
     }
 
-    /// The share of `reach` at which the line meets the triangle; 1 if it does not.
+    /// The share of `reach` after which the line from `from` meets triangle `row`; 1 if it does not meet the triangle.
     double share_until(const Vec3& from, const Vec3& reach, u32 row) const {
         const Triangle& t = hull_.triangles[row];
         const Vec3 &a = hull_.positions[t[0]], u = hull_.positions[t[1]] - a, v = hull_.positions[t[2]] - a;
@@ -340,7 +343,8 @@ private:
         }
     }
 
-    /// Lowers apexes that collide across a concave edge, raises those whose connection passes under a convex edge.
+    /// Lowers apexes that collide across a concave edge. Raises apexes whose connecting segment passes under a convex
+    /// edge.
     void open_gaps() {
         for (int round = 0; round < most_rounds; ++round) {
             bool has_changed = false;
@@ -358,7 +362,7 @@ private:
         }
     }
 
-    /// Whether apexes would have to be very high to see each other across the edge.
+    /// Whether the edge is so acute that only very high apexes have a connecting segment above it.
     bool is_acute(const HullEdge& edge) const {
         return hull_.faces[edge.first].normal.dot(hull_.faces[edge.second].normal) < cosine_of_acute;
     }

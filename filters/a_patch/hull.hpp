@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// The simplicial hull of a mesh: an apex on both sides of every triangle, and the tetrahedra between the apexes of
-/// neighbours (Bernardini et al. 1997, section 5).
+/// neighbours (Bernardini et al. 1997, section 5). In the comments, f(x, y, z) is the polar form of a tetrahedron's
+/// cubic: see patch_blossom().
 
 #include <algorithm>
 #include <limits>
@@ -16,59 +17,61 @@ enum Side : std::size_t { inside = 0, outside = 1 };
 inline constexpr std::array<Side, 2> both_sides{inside, outside};
 inline double sign_of(Side side) { return side == outside ? 1 : -1; }
 
-// Corners and edges of a triangle, around it.
+// The next and the previous corner or edge of a triangle.
 constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
 constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
 
-/// A triangle with its base point and the heights of its apexes, which lie on the line through the base point along
-/// the normal.
+/// A triangle with its base point and the heights of its apexes. The apexes lie on the line through the base point
+/// along the normal.
 struct HullFace {
     Vec3 normal;
     Vec3 base;              ///< the centre of the inscribed circle
     Vec3 share;             ///< barycentric coordinates of the base point
-    double radius = 0;      ///< of the inscribed circle
-    std::array<double, 2> least{};   ///< by Side: above it the signs at the apex are right
+    double radius = 0;      ///< radius of the inscribed circle
+    std::array<double, 2> least{};   ///< by Side: a higher apex has values of the right sign
     std::array<double, 2> height{};  ///< by Side
     /// By Side: largest height that the next sheet of the mesh above the base point allows.
     std::array<double, 2> limit{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    bool is_thin = false;  ///< whether an apex must be higher than `limit` by the next sheet
+    bool is_thin = false;  ///< whether an apex must be higher than the next sheet allows
     std::array<u32, 3> edges{};      ///< edge i goes from corner i to the next
-    /// Whether a tetrahedron per side is divided at the base point into three (Clough-Tocher).
+    /// Whether the tetrahedron on either side is divided at the base point into three (Clough-Tocher).
     bool is_divided = true;
-    double middle = 0;  ///< undivided: f(corner 0, corner 1, corner 2)
+    double middle = 0;  ///< f(corner 0, corner 1, corner 2) of an undivided triangle
 };
 
-/// An edge a → b of the first face, and, unless it is on the boundary, b → a of the second.
+/// An edge of the mesh. It goes from a to b in its first face, and from b to a in its second one. On the boundary there
+/// is no second face.
 struct HullEdge {
     static constexpr u32 none = ~u32(0);
 
     u32 a = 0, b = 0;
     u32 first = 0, second = none;
-    /// g of the first and of the second triangle, with n_a of that triangle: f(a, b, X) = (b - a) · n_a / 3 + g · (X -
-    /// a). Equal unless the edge is sharp.
+    /// For the first and the second face: the vector g in f(a, b, X) = (b - a) · n_a / 3 + g · (X - a), where n_a is
+    /// the face's normal at a. The two vectors are equal unless the edge is sharp.
     std::array<Vec3, 2> slopes{Vec3::Zero(), Vec3::Zero()};
     bool is_sharp = false;
-    /// Sharp: the surface along the edge is the segment itself.
+    /// Whether the crease of a sharp edge is the edge itself.
     bool is_straight = false;
-    /// Sharp: outside is where the larger of the two triangles' functions is positive; else the smaller.
+    /// At a convex sharp edge F is the larger of the two triangles' functions, at a concave one the smaller.
     bool is_convex = true;
-    /// By Side: whether tetrahedra connect the apexes of its two triangles.
+    /// By Side: whether tetrahedra connect the apexes of the two faces.
     std::array<bool, 2> is_filled{true, true};
 
     bool is_smooth() const { return second != none && !is_sharp; }
-    /// Whether the functions continue into the thirds beyond the edge.
+    /// Whether the function of each face continues into the third of the other face at this edge.
     bool is_continued() const { return is_sharp && !is_straight && is_filled[0] && is_filled[1]; }
-    /// Whether the surfaces of the two triangles may end apart from each other. Straight edges need no tetrahedra.
+    /// Whether there may be a gap between the surfaces of the two faces. A straight edge needs no tetrahedra to close
+    /// it.
     bool is_open() const { return second != none && !is_straight && !(is_filled[0] && is_filled[1]); }
 };
 
-/// Which triangles are divided.
+/// Decides which triangles are divided.
 enum class Split {
     always,
     where_needed  ///< where one tetrahedron per side cannot join its neighbours with equal gradients
 };
 
-/// Defects of a hull; numbers ascend.
+/// Defects of a hull; the indices ascend.
 struct HullFaults {
     std::vector<u32> thin;  ///< triangles too near to the next sheet
     std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out
@@ -77,12 +80,13 @@ struct HullFaults {
 /// The gradients at the corners of every triangle: unit length, or zero where the surface has a singular point.
 using CornerNormals = std::vector<std::array<Vec3, 3>>;
 
-/// A mesh whose surface is sought.
+/// The mesh over which a surface is built, and its normals.
 struct PatchMesh {
     TriangleMesh mesh;  ///< with its sharp edges; no columns
-    /// Equal at a vertex in triangles that are connected there without crossing a sharp edge.
+    /// Triangles that are connected at a vertex without crossing a sharp edge have equal normals there.
     CornerNormals normals;
-    /// By vertex, of those beyond its end false: whether the gradient is 0 there, so that the surface has a tip.
+    /// By vertex: whether the gradient is 0 there, so that the surface has a tip. False for vertices beyond the end of
+    /// the vector.
     std::vector<bool> pointed{};
 
     bool is_pointed(u32 vertex) const { return vertex < pointed.size() && pointed[vertex]; }
@@ -99,11 +103,11 @@ struct Hull {
     Vec3 apex(std::size_t face, Side side) const {
         return faces[face].base + sign_of(side) * faces[face].height[side] * faces[face].normal;
     }
-    /// f(v, v, X) of a face's corner v.
+    /// f(v, v, point) for a face's corner v.
     double at_corner(std::size_t face, std::size_t corner, const Vec3& point) const {
         return (point - positions[triangles[face][corner]]).dot(normals[face][corner]) / 3;
     }
-    /// f(a, b, X) of a face's edge.
+    /// f(a, b, point) for an edge of a face; `number` is the edge's number in the face.
     double at_edge(std::size_t face, std::size_t number, const Vec3& point) const {
         const HullEdge& edge = edges[faces[face].edges[number]];
         const bool is_second = edge.first != face;
@@ -114,22 +118,24 @@ struct Hull {
         const HullEdge& edge = edges[faces[face].edges[number]];
         return edge.slopes[edge.first != face];
     }
-    /// The number of an edge in one of its faces.
+    /// The number of an edge in one of its faces: 0, 1 or 2.
     std::size_t number_in(u32 edge, std::size_t face) const {
         const std::array<u32, 3>& all = faces[face].edges;
         return static_cast<std::size_t>(std::ranges::find(all, edge) - all.begin());
     }
-    /// Edge `edge` of the side: whether the tetrahedra between the apexes of its two faces have the right orientation.
+    /// Whether the tetrahedra on a side, between the apexes of the edge's two faces, have the right orientation.
     bool is_sound(const HullEdge& edge, Side side) const;
 };
 
-/// The least cosine between the normals of a triangle and of its corners.
+/// Smallest allowed cosine of the angle between a triangle's normal and the normals at its corners.
 inline constexpr double least_cosine = 0.1;
 
-/// `apex_factor`: the apex is so many times as high as it must be, and a bit more; but at most 0.45 of the distance to
-/// the next sheet of the mesh, unless it must be higher. Triangles with a sharp edge are divided. Pre: an oriented
-/// manifold without triangles of no area, whose normals are within least_cosine of their triangles', or zero. The
-/// result refers to `mesh`.
+/// Builds the hull of a mesh. An apex is `apex_factor` times as high as it must be, plus 0.15 inradii. It stays below
+/// 0.45 of the distance to the next sheet of the mesh, unless it must be higher. Triangles with a sharp edge are
+/// divided. The result refers to `mesh`.
+///
+/// Pre: an oriented manifold whose triangles have an area. A normal at a corner is zero, or its angle to the triangle's
+/// normal has at least the cosine least_cosine.
 Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution);
 
 }  // namespace scanmill::a_patches

@@ -23,7 +23,7 @@ constexpr std::size_t rows_at_once = 256;  // triangles
 constexpr int rounds = 3;
 constexpr std::array<double, 6> weights{1e-3, 1e-2, 0.1, 1, 10, 100};
 constexpr double at_vertex = 1e-9;  // barycentric
-constexpr double least_gradient = 0.5;  // least length of the mean of three unit vectors
+constexpr double least_gradient = 0.5;  // lower bound of a gradient's length; it is the mean of three unit vectors
 constexpr int most_halvings = 30;
 
 class NormalFitter {
@@ -72,8 +72,8 @@ private:
     using Vector2 = Eigen::Vector2d;
     using Axes = Eigen::Matrix<double, 3, 2>;
 
-    /// A point over its nearest triangle: F is the sum over the corners of n · arm, its gradient about that of n ·
-    /// share.
+    /// A point over its nearest triangle. F is the sum of n · arm over the corners.
+    /// The gradient of F is about the sum of n · share.
     struct Point {
         u32 triangle;
         std::array<Vec3, 3> arms;
@@ -135,7 +135,7 @@ private:
         return result;
     }
 
-    /// The value of F, and the length of its gradient.
+    /// The value of F, and the length of its gradient or least_gradient if that is larger.
     std::pair<double, double> value(const Point& point) const {
         double value = 0;
         Vec3 gradient = Vec3::Zero();
@@ -147,7 +147,8 @@ private:
         return {value, std::max(least_gradient, gradient.norm())};
     }
 
-    /// By triangle. Points at a vertex do not count: the surface passes through vertices anyway.
+    /// By triangle: the distance beyond which its points are outliers. Points at a vertex do not count, because the
+    /// surface passes through the vertices anyway.
     std::vector<double> outlier_distances() const {
         std::vector<double> found;
         std::vector<u32> triangles;
@@ -159,7 +160,7 @@ private:
         return a_patches::outlier_distances(found, triangles, neighbours_);
     }
 
-    /// Two directions that each normal changes along.
+    /// Sets, for each normal, the two directions along which it changes.
     void set_axes() {
         axes_.clear();
         for (const Vec3& n : normals_) {
@@ -172,13 +173,13 @@ private:
         }
     }
 
-    /// What the points of one triangle add to the system.
+    /// The contribution of the points over one triangle to the system.
     struct Part {
         Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
         Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
     };
 
-    /// The points' sums; in every triangle they go to both halves by turns.
+    /// Adds the contributions of the points. In every triangle, the points go to the two halves alternately.
     void add_points(std::array<BlockSystem, 2>& halves) const {
         const std::vector<double> most = outlier_distances();
         using Parts = std::vector<std::array<Part, 2>>;
@@ -226,7 +227,7 @@ private:
         return parts;
     }
 
-    /// The mean diagonal element of the points' sums.
+    /// Sets `scale_` to the mean diagonal element of the points' matrix over the free components.
     void set_scale() {
         double trace = 0, count = 0;
         for (u32 s = 0; s < system_.size(); ++s) {
@@ -263,10 +264,10 @@ private:
     std::vector<std::array<u32, 3>> neighbours_;  ///< by triangle
     std::vector<Vec3> given_, normals_;
     std::vector<Axes> axes_;
-    std::vector<Point> points_;  ///< by triangle
+    std::vector<Point> points_;  ///< ordered by triangle
     std::vector<std::size_t> first_;
     std::vector<Vector2> changes_;
-    std::vector<double> best_;  ///< weight
+    std::vector<double> best_;  ///< by sector: the weight it chose
     double scale_ = 1;
 };
 

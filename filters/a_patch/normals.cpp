@@ -25,7 +25,8 @@ constexpr std::size_t most_candidates = 100, least_neighbours = 6;  // at sharp 
 constexpr double same_cosine = 0.99999;  // 0.26 degrees
 constexpr double rounding = 1e-14;  // of cosines
 
-/// The normal at `point` of the quadric through it that fits the others; that of their plane if there is none.
+/// The normal at `point` of a quadric through it that is fitted to the others. If there is no such quadric, the normal
+/// of their plane.
 Vec3 normal_at(const Vec3& point, std::span<const Vec3> others) {
     std::vector<Vec3> relative{Vec3::Zero()};
     for (const Vec3& p : others) relative.push_back(p - point);
@@ -42,7 +43,8 @@ Vec3 normal_at(const Vec3& point, std::span<const Vec3> others) {
     return quadric ? Vec3((n - quadric->d * x - quadric->e * y).normalized()) : n;
 }
 
-/// See most_normal(). The smallest cap around the normals has one, two or three of them on its border: all are tried.
+/// See most_normal(). The smallest cap that contains all normals has one, two or three of them on its border, so all
+/// such caps are tried.
 Vec3 most_normal_of_few(std::span<const Vec3> normals) {
     Vec3 best = normals[0];
     double greatest = -2;
@@ -174,12 +176,12 @@ std::vector<Vec3> point_normals(const TriangleMesh& mesh, const Sectors& sectors
 GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors) {
     const Column* column = mesh.face_columns.find("corner-normals");
     if (!column)
-        throw Error("normals is given, but the mesh has no face column 'corner-normals'")
-            .hint("'decimate' computes it; 'normals: mesh' needs none");
+        throw Error("`normals: given` needs the face column 'corner-normals'; the mesh has none")
+            .hint("'decimate' computes this column; 'normals: mesh' does not need it");
     constexpr u32 components = 9;
     if (column->components() != components)
         throw Error("the face column 'corner-normals' has {} numbers per triangle; 9 are needed", column->components())
-            .hint("'decimate' computes them: three per corner; 'normals: mesh' needs none");
+            .hint("'decimate' computes them, three per corner; 'normals: mesh' does not need the column");
     GivenNormals result{std::vector<Vec3>(sectors.size(), Vec3::Zero()), 0};
     std::vector<Vec3> first(sectors.size(), Vec3::Zero());
     std::vector<bool> differs(sectors.size(), false);
@@ -201,14 +203,14 @@ GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors) {
     if (invalid > 0)
         throw Error("{} of {} corner normals are NaN or infinite, the first at triangle {}", invalid,
                     3 * mesh.triangles.size(), first_invalid)
-            .hint("'normals: mesh' computes normals anew");
+            .hint("'normals: mesh' computes the normals from the triangles");
     for (Vec3& n : result.normals) n.normalize();
     result.several = static_cast<std::size_t>(std::ranges::count(differs, true));
     return result;
 }
 
 Vec3 most_normal(std::span<const Vec3> normals) {
-    // That of a few normals, until no other one is farther from it.
+    // Finds the direction of a few normals, and adds the farthest other normal until none is farther.
     std::vector<std::size_t> few{0};
     for (;;) {
         std::vector<Vec3> chosen;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The distance beyond which a point is an outlier.
+/// Distances beyond which points are outliers.
 
 #include <limits>
 
@@ -8,11 +8,13 @@
 
 namespace scanmill::a_patches {
 
-/// By triangle: 3 times the median of the distances of the points over the triangle and its neighbours; 0 without
-/// points. Not that of all points, which is 0 on an object with many exactly flat triangles, and too large or too small
-/// where noise varies. Infinite distances do not count. Cost: linear.
+/// By triangle: 3 times the median distance of the points over the triangle and its neighbours; 0 without points.
+/// Infinite distances do not count. Cost: linear.
 ///
-/// `neighbours`: by triangle; indices of no triangle are ignored.
+/// A median over all points would be 0 on an object with many exactly flat triangles. Where noise varies, it would be
+/// too large or too small.
+///
+/// `neighbours` are given by triangle; invalid indices are ignored.
 std::vector<double> outlier_distances(std::span<const double> distances, std::span<const u32> triangle_of_point,
                                       std::span<const std::array<u32, 3>> neighbours);
 

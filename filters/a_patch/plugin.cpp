@@ -12,51 +12,54 @@ SCANMILL_FILTER() {
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
-            "Of equally long edges the one with the lower vertices is bisected first, and of equally acute ones "
-            "becomes "
-            "sharp.")
+            "Among equally long edges, the one with the lower vertices is bisected first. Among equally acute edges, "
+            "the one with the lower vertices becomes sharp.")
         .not_finite("Refused, with their number and the first of them.")
         .in<TriangleMesh>(
             "mesh",
-            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface, which has creases "
-            "at its sharp edges; its face column `corner-normals` gives the normals there.")
+            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface, and its sharp edges "
+            "become creases. Its face column `corner-normals` gives the normals at the vertices.")
         .in<PointCloud>("points",
-                        "The scan: the surface is fitted to it, and it gives the normals at the vertices of a mesh "
-                        "without `corner-normals`.",
+                        "The scan. The surface is fitted to its points. They also give the normals at the vertices if "
+                        "the mesh has no `corner-normals`.",
                         optional)
-        .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
+        .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, each with the 20 weights of its cubic.")
         .choice("normals", &P::normals,
                 {{"auto", P::Normals::automatic,
-                  "given if the mesh has the column, else points if there are any, else mesh; with points and `fit` "
-                  "turned so that the surface passes near the points."},
+                  "`given` if the mesh has the column, else `points` if there are points, else `mesh`. With points and "
+                  "`fit`, the normals are then turned so that the surface passes near the points."},
                  {"given", P::Normals::given, "The mesh's face column `corner-normals`."},
                  {"points", P::Normals::points, "Normals of quadrics fitted to the points near each vertex."},
                  {"mesh", P::Normals::mesh, "Mean normal of the triangles around each vertex."}},
-                "Where the normals at the vertices come from; they decide most of the surface's error.")
+                "Source of the normals at the vertices; they decide most of the surface's error.")
         .choice("split", &P::split,
-                {{"always", Split::always, "Three tetrahedra per side of every triangle: the smaller error."},
+                {{"always", Split::always, "Every triangle has three tetrahedra per side; the error is smaller."},
                  {"where-needed", Split::where_needed,
-                  "One, unless it cannot join its neighbours with equal gradients: up to a third fewer tetrahedra."}},
-                "Which triangles' tetrahedra are divided at a base point.")
+                  "A triangle has one tetrahedron per side, unless it cannot join its neighbours with equal gradients; "
+                  "there are up to a third fewer tetrahedra."}},
+                "Choice of the triangles whose tetrahedra are divided at a base point.")
         .param("fit", &P::fit, "Fits normals (with `normals: auto`) and edge gradients to the points.")
         .param("fairing", &P::fairing,
-               "Weight of a fair surface against a near one: at 1 it weighs about as much as the points.", at_least(0))
+               "Weight of the surface's fairness relative to its distance from the points; at 1 both weigh about the "
+               "same.",
+               at_least(0))
         .param(
             "regularisation", &P::regularisation,
-            "Smallest penalty on changes of the edge gradients, relative to the points. A larger one is used where it "
-            "predicts one half of the points better from the other half.",
+            "Smallest penalty on changes of the edge gradients, relative to the points. An edge gets a larger penalty "
+            "if each half of the points near it then predicts the other half better.",
             at_least(1e-6), at_most(1))
-        .choice("curvature", &P::curvature,
-                {{"distance", Curvature::distance, "None: F grows like a distance."},
-                 {"mean", Curvature::mean, "The mean curvature of the triangle's quadric: exact for spheres."}},
-                "The second derivative of F along the normal.")
+        .choice(
+            "curvature", &P::curvature,
+            {{"distance", Curvature::distance, "The second derivative is 0: F grows like a distance."},
+             {"mean", Curvature::mean, "The mean curvature of the triangle's quadric, which is exact for spheres."}},
+            "Second derivative of F along the normal.")
         .param(
             "apex-factor", &P::apex_factor,
-            "Height of the tetrahedra over the least possible height. Higher ones contain more of the space near the "
-            "surface.",
+            "Height of the tetrahedra, as a multiple of the smallest possible height. Higher tetrahedra contain more "
+            "of the space near the surface.",
             at_least(1.05), at_most(3))
         .metric("tetrahedra", Unit::count, "Tetrahedra of the result.", headline)
-        .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
+        .metric("inverted", Unit::count, "Tetrahedra that are inside out; always 0.")
         .metric("c1-jump", Unit::number,
                 "Largest difference of the gradients where tetrahedra meet, except at sharp edges, as a share of the "
                 "gradient.",
@@ -72,23 +75,22 @@ SCANMILL_FILTER() {
         .metric("pointed-vertices", Unit::count,
                 "Vertices where the surface has a tip, because no smooth surface fits there.", smaller_is_better)
         .metric("straight-edges", Unit::count,
-                "Edges made sharp and straight between such vertices, because nothing else fits.", smaller_is_better)
+                "Edges made sharp and straight between pointed vertices, because nothing else fits.", smaller_is_better)
         .metric("raised", Unit::count,
                 "Control coefficients changed so that every line to an apex meets the surface once.")
         .metric("fit-rms", Unit::length, "Root of the mean squared distance of the points from the surface.", headline,
                 smaller_is_better)
-        .metric("fit-p95", Unit::length, "95 % quantile of these distances.", smaller_is_better)
-        .metric("fit-max", Unit::length, "Largest of these distances.", smaller_is_better)
-        .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
+        .metric("fit-p95", Unit::length, "95 % quantile of the points' distances from the surface.", smaller_is_better)
+        .metric("fit-max", Unit::length, "Largest distance of a point from the surface.", smaller_is_better)
+        .metric("left-out", Unit::count, "Points in no tetrahedron; they are neither fitted nor measured.",
                 smaller_is_better)
         .metric("crease-max", Unit::length,
-                "Largest distance of a crease from the mesh's sharp edge; creases of round edges bulge.")
-        .metric("regularisation", Unit::number, "Median penalty used.")
-        .metric(
-            "fairness-before", Unit::number,
-            "Sum over the edges of the squared difference between the gradient and that of the triangles' quadrics, "
-            "before fitting and fairing.")
-        .metric("fairness-after", Unit::number, "The same of the result.", smaller_is_better)
+                "Largest distance between a crease and the mesh's sharp edge; creases of round edges bulge.")
+        .metric("regularisation", Unit::number, "Median over the edges of the penalty used.")
+        .metric("fairness-before", Unit::number,
+                "Sum over the edges of the squared difference between the edge's gradient and that of the triangles' "
+                "quadrics, before fitting and fairing.")
+        .metric("fairness-after", Unit::number, "The same sum as `fairness-before`, for the result.", smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set(
                 "patches",

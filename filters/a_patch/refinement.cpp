@@ -12,8 +12,8 @@ namespace scanmill::a_patches {
 
 namespace {
 
-constexpr double least_sine_of_crease = 0.1;  // between the normals on its sides, for a direction
-constexpr double least_cosine_of_part = 0.5;  // to the whole triangle, and to the new vertex
+constexpr double least_sine_of_crease = 0.1;  // between the normals on its sides, to give the crease a direction
+constexpr double least_cosine_of_part = 0.5;  // between the normals of a part and of the triangle or new vertex
 
 struct LongEdge {
     double squared;
@@ -35,7 +35,8 @@ LongEdge longest_edge(const TriangleMesh& mesh, u32 triangle) {
     return longest;
 }
 
-/// Bisects those of the edges, longest first, whose triangles are not cut yet. Returns how many.
+/// Bisects the edges, the longest first. Skips an edge if one of its triangles is already cut. Returns the number of
+/// bisected edges.
 std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle position) {
     TriangleMesh& mesh = patch_mesh.mesh;
     CornerNormals& normals = patch_mesh.normals;
@@ -69,7 +70,7 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
         const bool is_sharp = !is_border && std::ranges::binary_search(mesh.sharp_edges, edge.ends);
         const Vec3 d = positions[b] - positions[a];
         const auto middle = static_cast<u32>(positions.size());
-        // By end and side.
+        // Normals of the edge, by end and side.
         const std::array<std::array<Vec3, 2>, 2> at{
             {{corner_normal(half), is_border ? corner_normal(half) : corner_normal(half_edges::after(other))},
              {corner_normal(half_edges::after(half)),
@@ -106,7 +107,7 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
             std::array<Vec3, 3>& first_normals = normals[of_side / 3];
             Triangle second = first;
             std::array<Vec3, 3> second_normals = first_normals;
-            const u32 i = of_side % 3, j = (i + 1) % 3;  // half % 3 is the corner where the edge begins
+            const u32 i = of_side % 3, j = (i + 1) % 3;  // of_side % 3 is the corner where the edge begins
             first[j] = second[i] = middle;
             first_normals[j] = second_normals[i] = new_normals[side];
             cut.push_back(second);

@@ -6,21 +6,23 @@
 
 namespace scanmill::a_patches {
 
-/// Bisects the longest edge of each of the triangles; the longest of all come first (ties: by their vertices), and an
-/// edge is left out if one of its triangles is cut already. The new vertex is the middle of the cubic through the ends
-/// whose tangents there are the edge, projected to the tangent planes (as in Vlachos et al. 2001, "Curved PN
-/// triangles"), or to the line where the two planes of a sharp edge meet; its normal is the mean of the ends', made
-/// perpendicular to that cubic. A cut triangle keeps its row for the first part; the other parts are appended. Returns
-/// how many edges were bisected: at least one, if there are triangles. Pre: an oriented manifold.
+/// Bisects the longest edge of each of the triangles, the longest edges first (ties: by their vertices). An edge is
+/// left out if one of its triangles is already cut. A cut triangle keeps its row for the first part; the other part is
+/// appended. Returns the number of bisected edges: at least one, if there are triangles. Pre: an oriented manifold.
+///
+/// The new vertex is the middle of a cubic curve through the edge's ends. The curve's tangent at an end is the edge,
+/// projected to the tangent plane (as in Vlachos et al. 2001, "Curved PN triangles"). At a sharp edge it is projected
+/// to the line in which the two tangent planes meet. The new normal is the mean of the ends' normals, made
+/// perpendicular to the curve. If a part of a triangle would turn too far, Middle::of_segment applies instead.
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 
-/// Where the vertex that bisects an edge is.
+/// Position and normals of the vertex that bisects an edge.
 enum class Middle {
     of_curve,   ///< middle of the cubic that bisect() describes
-    of_segment  ///< between the ends, with the normals of the triangles
+    of_segment  ///< middle of the edge; the normals are those of the triangles
 };
 
-/// The same for edges.
+/// Bisects edges like bisect(), with new vertices according to `middle`.
 std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle);
 
 }  // namespace scanmill::a_patches

@@ -14,7 +14,9 @@ namespace scanmill::a_patches {
 namespace {
 
 constexpr double cosine_of_fold = 0.8660254037844386;  // of 30 degrees
-constexpr double level_sine = 1e-3, level_share = 0.1;  // between a normal and a sharp edge; of that beyond the edge
+// Sines of the deviation of a normal from perpendicular to a sharp edge: the largest one, and the largest as a share of
+// the deviation of the normal beyond the edge.
+constexpr double level_sine = 1e-3, level_share = 0.1;
 constexpr double cosine_of_level = 0.9993908270190958;  // of 2 degrees
 constexpr double least_length = 0.1;  // least length of a sum or product of unit vectors that gives a direction
 
@@ -22,7 +24,7 @@ void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& norma
     for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
 }
 
-/// Adds to the sharp edges. Returns how many are new.
+/// Adds edges to the sharp edges. Returns the number of new ones.
 std::size_t add_sharp(TriangleMesh& mesh, std::vector<Edge> edges) {
     const std::size_t before = mesh.sharp_edges.size();
     edges.insert(edges.end(), mesh.sharp_edges.begin(), mesh.sharp_edges.end());
@@ -32,7 +34,7 @@ std::size_t add_sharp(TriangleMesh& mesh, std::vector<Edge> edges) {
     return mesh.sharp_edges.size() - before;
 }
 
-/// The edge within a sector between the triangles whose normals differ most; ties: its vertices.
+/// The edge within a sector whose two triangles' normals differ most; ties: by its vertices.
 std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sectors, std::span<const u32> corners,
                                     const Array<u32>& opposites, std::span<const Vec3> of_triangles) {
     std::optional<std::pair<double, Edge>> best;
@@ -211,7 +213,7 @@ std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& 
         if (!std::ranges::binary_search(sought, edge)) continue;
         const u32 other = opposites[half];
         const auto normal = [&](u32 corner) -> const Vec3& { return mesh.normals[corner / 3][corner % 3]; };
-        // Within a chain of creases the normals differ at both ends.
+        // At the last edge of a chain of creases, the normals differ at one end only.
         const bool is_crease = normal(half).dot(normal(half_edges::after(other))) < cosine_of_fold ||
                                normal(half_edges::after(half)).dot(normal(other)) < cosine_of_fold;
         if (!is_crease || of_triangles[half / 3].dot(of_triangles[other / 3]) > cosine_of_fold) blunt.push_back(edge);

@@ -23,31 +23,34 @@ std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3>
 /// Whether the direction is more than 84 degrees from one of the normals.
 bool opposes(const Vec3& direction, std::span<const Vec3> normals);
 
-/// Replaces normals that oppose a triangle, by that of the mesh or the direction nearest to all triangles of the
-/// sector. Where no direction suits all, the sector's most acute edges become sharp, until one does (ties: by their
-/// vertices).
+/// Replaces each normal that opposes a triangle by the normal of the mesh, or by the direction nearest to the normals
+/// of all triangles of the sector. Where no direction suits all of them, the sector's most acute edges become sharp
+/// until one does (ties: by their vertices).
 void replace_opposing(PatchMesh& mesh, Repairs& repairs);
 
-/// Makes the normal of a sector perpendicular to the one or two sharp edges at its sides, where it almost is, and it is
-/// much more so than that of the other sides: then a plane face meets a curved one in a curve of the plane, and two
-/// planes in a straight line. Rounding would make the plane cross the chord of the curve.
+/// Makes a sector's normal perpendicular to the one or two sharp edges at its sides if a turn of at most 2 degrees
+/// suffices. The normal must be almost perpendicular to each edge, or much nearer to that than the normal beyond the
+/// edge. Then a plane face meets a curved face in a plane curve, and another plane face in a straight line. Rounding
+/// would make the plane cross the chord of the curve.
 void level_normals(PatchMesh& mesh);
 
-/// Gives the corners of the triangles the direction nearest to all their triangles' normals.
+/// Sets each normal at the triangles' corners to the direction nearest to the normals of all triangles of its sector.
 void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs);
 
-/// Turns the normals at the ends of these sharp edges so that creases follow the edges: perpendicular to the chain of
-/// two sharp edges, to a last sharp edge, and at corners to the two edges of every sector, unless a triangle opposes
-/// that.
+/// Turns the normals at the ends of these sharp edges so that creases follow the edges. If a sector has one sharp edge,
+/// its normal becomes perpendicular to that edge. If it has two, its normal becomes perpendicular to the chain of the
+/// two edges, or, at a corner with more sharp edges, to each of the two. A normal stays if a triangle opposes the new
+/// one.
 void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
-/// Makes those of the sharp edges smooth whose triangles' normals differ by less than 30 degrees, or the normals on
-/// both sides at both ends; their ends get the mean of the normals. Returns how many.
+/// Makes a sharp edge smooth if the normals of its triangles differ by less than 30 degrees, or if the normals on its
+/// two sides do so at both ends. The ends get the mean of the normals. Returns the number of edges made smooth.
 std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
-/// Makes the ends of the edges and the corners of the triangles pointed. Edges and sides of triangles where all
-/// vertices are so already become sharp: the surface follows the mesh there, because sharp edges between pointed
-/// vertices are straight, and a triangle with three of them is flat. Returns whether something has changed.
+/// Makes the ends of the edges and the corners of the triangles pointed. If all of these vertices are pointed already,
+/// the edge, or the sides of the triangle, become sharp. The surface then follows the mesh, because a sharp edge
+/// between pointed vertices is straight, and a triangle with three such edges is flat. Returns whether something has
+/// changed.
 bool loosen(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs);
 
 }  // namespace scanmill::a_patches

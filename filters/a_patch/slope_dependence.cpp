@@ -26,7 +26,7 @@ Directions directions(const Hull& hull, u32 number) {
         const HullFace& face = hull.faces[f];
         normal += face.normal;
         if (face.is_divided) continue;
-        // The value at the opposite corner is the triangle's only free weight there.
+        // An undivided triangle fixes f(a, b, X) at its opposite corner. The slope can change only perpendicular to it.
         ++undivided;
         const Vec3 to = hull.positions[hull.triangles[f][previous(hull.number_in(number, f))]] - a;
         result.col(0) = d.cross(to).normalized();
@@ -91,7 +91,7 @@ void SlopeDependence::set_edge(u32 number, std::size_t triangles) {
         const Triangle& t = hull_->triangles[faces[of]];
         const Vec3 apex = hull_->apex(faces[of], side_);
         unit_[0][of] = effect(number, apex);
-        // The edges from i, and from j, to the third corner; i and j follow the direction of the triangle's own edge.
+        // The edges from i to the third corner, and from j. i and j are ordered as in the tetrahedron's own triangle.
         const std::size_t here = hull_->number_in(number, faces[of]);
         const std::size_t at_i = of == 0 ? previous(here) : next(here), at_j = of == 0 ? next(here) : previous(here);
         edges_[1 + 2 * of] = face.edges[at_i];
@@ -110,8 +110,8 @@ SlopeDependence::Coefficients SlopeDependence::coefficients(const Barycentric& a
     const double w = at[0], i = at[1], j = at[2], top = at[3];
     Coefficients c{};
     if (is_edge_) {
-        // The last two weights at x depend on f(i, x, apex), f(j, x, apex), f(i, x, x) and f(j, x, x). The last two of
-        // these are means over both triangles; at a sharp edge they do not depend on slopes.
+        // f(x, x, apex) and f(x, x, x) depend on f(i, x, x) and f(j, x, x). These are means over both triangles of f(i,
+        // x, apex) and f(j, x, apex). At a sharp edge they do not depend on slopes.
         const double share = count_ == most_edges ? 0.5 : 0;
         const double beyond = (3 * w * w * top + w * w * w) / 2;
         const double of_i = 3 * w * w * i + beyond, of_j = 3 * w * w * j + beyond;
@@ -125,7 +125,7 @@ SlopeDependence::Coefficients SlopeDependence::coefficients(const Barycentric& a
     } else if (is_divided_) {
         const double si = shares_[0], sj = shares_[1], sk = shares_[2];
         for (std::size_t of = 0; of < 2; ++of) {
-            // f(w, w, w), f(w, w, i), f(w, w, j) with f(w, i, j), or the same with the apex in place of one w.
+            // First f(w, w, w), f(w, w, i), f(w, w, j) and f(w, i, j); then the same with the apex in place of one w.
             const double p = of == 0 ? w * w * w : 3 * w * w * top;
             const double q = of == 0 ? 3 * w * w : 6 * w * top;
             c[0][of] = 2 * si * sj * p + sj * q * i + si * q * j + 6 * i * j * (of == 0 ? w : top);

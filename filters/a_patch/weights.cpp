@@ -15,18 +15,19 @@ namespace {
 using Vector4 = Eigen::Vector4d;
 
 constexpr std::size_t chunk = 1024;  // faces or edges
-constexpr double least_share = 0.1;  // least share of an apex's value that the edge points keep
+constexpr double least_share = 0.1;  // smallest ratio of a weight to the weight that is next nearer to the mesh
 constexpr double least_share_of_edge = 0.2;
-constexpr double rounding = 1e-15;  // share of the largest weight: at singular points weights are 0
+constexpr double rounding = 1e-15;  // share of the largest weight; weights at singular points are 0
 
 /// One side of a face. An affine function on its tetrahedron is given by its values at the three corners and the apex.
 struct FaceSide {
     Vec3 apex;
     std::array<Vector4, 3> m;  ///< f(v, apex, .)
     Vector4 n;                 ///< f(apex, apex, .)
-    /// At edge i: the midpoint of the two apexes; at a sharp edge the other apex; on the boundary this apex.
+    /// At edge i: the midpoint of the two apexes. At a sharp edge: the other triangle's apex. On the boundary: this
+    /// apex.
     std::array<Vec3, 3> edge_point{};
-    std::array<Vector4, 3> at_edge_point;  ///< its coordinates
+    std::array<Vector4, 3> at_edge_point;  ///< barycentric coordinates of the edge points
     Eigen::Matrix3d curvature;
 };
 
@@ -80,8 +81,8 @@ public:
 private:
     static constexpr std::size_t tets_per_side = 2, none_of_ends = 2;
 
-    /// Vertices: those of the mesh, base points of divided triangles, apexes inside and outside, edge points inside and
-    /// outside.
+    /// Numbers the vertices in this order: vertices of the mesh, base points of divided triangles, apexes, edge points.
+    /// For each triangle or edge, the vertex inside precedes the one outside.
     void number_vertices() {
         const std::size_t faces = hull_.faces.size();
         std::size_t bases = hull_.positions.size();
@@ -121,7 +122,8 @@ private:
         return static_cast<u32>(first_edge_point_ + edge_point_[e][side]);
     }
 
-    /// Sets the free weights of a face's side and what follows from them. Returns how many weights were raised.
+    /// Sets the free weights of a face's side, and the weights that follow from them. Returns the number of raised
+    /// weights.
     std::size_t set_face(std::size_t f, Side side) {
         const HullFace& face = hull_.faces[f];
         const Triangle& t = hull_.triangles[f];
@@ -137,7 +139,7 @@ private:
             at_apex[i] = hull_.at_corner(f, i, out.apex);
             along_edge[i] = hull_.at_edge(f, i, out.apex);
         }
-        // Without normals at some corners the quadric may be anything.
+        // If a corner has no normal, the quadric may have any value.
         if (std::ranges::find(hull_.normals[f], Vec3(Vec3::Zero())) != hull_.normals[f].end())
             quadric = sign * std::max(sign * quadric, least_share * face.height[side]);
         for (std::size_t i = 0; i < 3; ++i) free[i] = (quadric + 3 * at_apex[i]) / 3;
@@ -186,6 +188,7 @@ private:
     }
 
     /// Raises (on the inner side: lowers) the value at the apex until the function reaches `wanted` at the point.
+    /// Returns the number of raised values, 0 or 1.
     static std::size_t raise(Vector4& values, const Vector4& at, double wanted, double sign) {
         const double missing = sign * (wanted - values.dot(at));
         if (missing <= 0 || at[3] <= 0) return 0;
@@ -242,7 +245,7 @@ private:
         const FaceSide& s = sides_[side][f];
         const std::size_t row = first_row_[f] + side;
         tets_[row] = {t[0], t[1], t[2], apex_number(f, side)};
-        // Corner 0 takes the place of the base point, edge 1 is the opposite one.
+        // Corner 0 replaces the base point; the edge opposite to it is edge 1.
         weights_[row] =
             with_corners(f, s, 1,
                          {0, hull_.at_corner(f, 0, hull_.positions[t[1]]), hull_.at_corner(f, 0, hull_.positions[t[2]]),
@@ -251,13 +254,13 @@ private:
         describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
     }
 
-    /// Returns how many weights were raised.
+    /// Writes the tetrahedra beside a smooth edge. Returns the number of raised weights.
     std::size_t write_edge(std::size_t e, Side side) {
         const HullEdge& edge = hull_.edges[e];
         const double sign = sign_of(side);
         const std::size_t first = row_of_edge_[e] + (side == outside && has_edge_point(e, inside) ? tets_per_side : 0);
         const std::array<u32, 2> faces{edge.first, edge.second};
-        std::array<std::size_t, 2> corner, number;  // by face: its corner at the edge's a, and its number of the edge
+        std::array<std::size_t, 2> corner, number;  // by face: the corner at the edge's a, and the number of the edge
         for (std::size_t of = 0; of < 2; ++of) {
             number[of] = hull_.number_in(static_cast<u32>(e), faces[of]);
             corner[of] = of == 0 ? number[of] : next(number[of]);
@@ -292,7 +295,7 @@ private:
         }
         for (std::size_t of = 0; of < 2; ++of) {
             const std::size_t f = faces[of], row = first + of;
-            // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
+            // Corners i and j are ordered as in the face's other tetrahedra.
             const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
             tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};
             weights_[row] =
@@ -306,8 +309,8 @@ private:
 
     // Sharp edges.
 
-    /// The quadric of a face's side, as it continues beyond the edge with this number: its polar form is the mean of
-    /// those with value and gradient of the edge's ends.
+    /// The quadric of a face's side, continued beyond one of its edges. Its polar form is the mean of two polar forms;
+    /// each has the value and the gradient of one end of the edge.
     struct Continuation {
         std::array<Vec3, 2> ends, normals;  ///< at the corner where the edge begins, and at the next one
         Eigen::Matrix3d curvature;
@@ -358,7 +361,7 @@ private:
         partners_[other] = static_cast<u32>(one);
     }
 
-    /// The function of face f in the tetrahedron between the two apexes of a sharp edge.
+    /// Writes the function of face f in the tetrahedron between the two apexes of a sharp edge.
     void write_gap(std::size_t row, u32 e, std::size_t f, std::size_t beyond, Side side) {
         const FaceSide& s = sides_[side][f];
         const Triangle& t = hull_.triangles[f];
@@ -375,12 +378,13 @@ private:
         describe(row, PatchKind::sharp, side, f, e);
     }
 
-    /// The function of face f in the tetrahedron `whole` of face `into`, which is beside the edge.
+    /// Writes the function of face f in a tetrahedron beside the edge: the tetrahedron `whole` of face `into`.
     void write_continuation(std::size_t row, std::size_t whole, u32 e, std::size_t f, std::size_t into, Side side) {
         const std::size_t number = hull_.number_in(e, f);
         const Continuation quadric = continuation(f, number, side);
         tets_[row] = tets_[whole];
-        // The corners are base, the edge's second end, its first end, apex: the edge goes the other way in `into`.
+        // The corners are base point, second end, first end, apex, because the edge has the opposite direction in
+        // `into`.
         const std::array<Vec3, 4> x{hull_.faces[into].base, quadric.ends[1], quadric.ends[0], sides_[side][into].apex};
         const std::array<std::size_t, 4> end{none_of_ends, 1, 0, none_of_ends};
         const std::array<std::size_t, 2> corner{number, next(number)};
@@ -390,7 +394,7 @@ private:
             return end[b] != none_of_ends ? quadric.at_end(end[b], x[a]) : quadric.polar(x[a], x[b]);
         };
         const auto weight = [&](std::size_t a, std::size_t b, std::size_t c) {
-            // Ascending: an end that occurs twice, or both ends.
+            // Finds two arguments that are ends of the edge: one end twice, or both ends.
             for (const auto& [u, v, w] : {std::array{a, b, c}, std::array{b, c, a}, std::array{a, c, b}}) {
                 if (end[u] == none_of_ends || end[v] == none_of_ends) continue;
                 return u == v ? hull_.at_corner(f, corner[end[u]], x[w]) : hull_.at_edge(f, number, x[w]);
@@ -404,7 +408,7 @@ private:
         describe(row, PatchKind::continuation, side, into, e);
     }
 
-    /// The ten weights of the first corner, and those of corners i and j of edge i and the apex.
+    /// Joins the ten weights of the first corner with the weights of corners i and j of edge i, and the apex.
     PatchWeights with_corners(std::size_t f, const FaceSide& s, std::size_t i, const std::array<double, 10>& first) {
         const Triangle& t = hull_.triangles[f];
         const std::size_t j = next(i);
@@ -453,8 +457,8 @@ private:
 
 }  // namespace
 
-/// The quadric that interpolates a face's vertices and normals as well as it can: value and gradient come from the
-/// vertices, H from the differences of the normals.
+/// The quadric interpolates a face's vertices and normals as well as it can. Its value and gradient come from the
+/// vertices, its second derivatives from the differences of the normals.
 Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t face, Curvature curvature) {
     const Triangle& t = hull.triangles[face];
     const Vec3& p = hull.positions[t[0]];

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The weights of the cubics over a hull: they interpolate the vertices and their normals, and join with equal
-/// gradients (specs: "order of computation and closed forms").
+/// The weights of the cubics over a hull. The cubics interpolate the vertices and their normals, and join with equal
+/// gradients.
 
 #include "a_patch/hull.hpp"
 #include "scanmill/data/patches.hpp"
 
 namespace scanmill::a_patches {
 
-/// The second derivative along the normal of the quadric that sets the weights off the surface.
+/// The second derivative along the normal of the quadric that determines the weights off the surface.
 enum class Curvature {
     distance,  ///< 0: F grows like a distance
     mean       ///< the mean curvature: exact for spheres
@@ -16,14 +16,14 @@ enum class Curvature {
 
 struct Weights {
     PatchComplex patches;  ///< without a frame
-    std::size_t raised = 0;  ///< weights that were changed so that every line to an apex meets the surface once
+    std::size_t raised = 0;  ///< number of weights changed so that every line to an apex meets the surface once
 };
 
 /// The second derivatives of the quadric that fits a triangle's corners and normals.
 Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t face, Curvature curvature);
 
-/// How many weights of a tetrahedron beside or above its base have the sign of the other side; 0 for `sharp` and
-/// `continuation`, whose weights decide nothing alone.
+/// Number of weights of a tetrahedron that have the sign of the other side. Weights on the mesh do not count. The
+/// number is 0 for `sharp` and `continuation`, whose weights decide nothing alone.
 std::size_t wrong_signs(const PatchComplex& patches, std::size_t tet);
 
 /// Cost: linear, about 2 us per triangle.

@@ -437,8 +437,8 @@ TEST(APatchFit, Off_ReportsNoRegularisation_AndThatNothingIsMeasured) {
     EXPECT_EQ(metric_of(by_default(mesh, nullptr, 0.1), "regularisation"), 1e-3);
     EXPECT_THAT(
         by_default(mesh, &far).warnings,
-        ElementsAre("1 of 1 point is in no tetrahedron near the surface and does not count: are mesh and points of "
-                    "one object, in one position?"));
+        ElementsAre("1 of 1 point is in no tetrahedron near the surface and does not count; check that the mesh and "
+                    "the points show the same object in the same position"));
 }
 
 TEST(APatchFit, ASurfaceFartherFromThePointsThanItsMesh_IsDoubtful) {
@@ -470,8 +470,8 @@ TEST(APatchFit, WithoutPointsInReach_TheBitsAreTheDefaults) {
     EXPECT_EQ(metric_of(far, "left-out"), 3);
     EXPECT_THAT(
         far.warnings,
-        ElementsAre("3 of 3 points are in no tetrahedron near the surface and do not count in the fit: are mesh "
-                    "and points of one object, in one position?"));
+        ElementsAre("3 of 3 points are in no tetrahedron near the surface and do not count in the fit; check that the "
+                    "mesh and the points show the same object in the same position"));
     const PatchRun empty = fitted(mesh, PointCloud{});
     expect_same_bits(empty.result.patches, by_default(mesh).result.patches);
     EXPECT_THAT(empty.warnings, ElementsAre("the input `points` is empty: the surface is not fitted"));

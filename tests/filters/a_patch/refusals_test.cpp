@@ -41,7 +41,7 @@ TEST(APatchRefuses, AVertexWithTwoFans) {
 
 TEST(APatchRefuses, ATriangleWithoutArea) {
     const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}));
-    EXPECT_THAT(error.sentence(), HasSubstr("1 of 2 triangles has no area, the first is triangle 0 at (0, 0, 0)"));
+    EXPECT_THAT(error.sentence(), HasSubstr("1 of 2 triangles has no area; the first is triangle 0 at (0, 0, 0)"));
     EXPECT_FALSE(error.hint().empty());
 }
 
@@ -49,7 +49,7 @@ TEST(APatchRefuses, ASurfaceThatIsCutAtAnEdge) {
     const Error error =
         refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));
     EXPECT_EQ(error.sentence(),
-              "2 of 6 boundary edges are at the position of another one, the first begins at vertex 2 at (0, 1, 0)");
+              "2 of 6 boundary edges coincide with another boundary edge; the first begins at vertex 2 at (0, 1, 0)");
     EXPECT_EQ(error.hint(), "`repair` joins them");
     EXPECT_NO_THROW(
         patched(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}, {{0, 1, 2}, {3, 4, 5}})))
@@ -96,7 +96,7 @@ TEST(APatchRefuses, GivenNormalsThatAreNotThere) {
     APatchParams params;
     params.normals = PatchNormals::given;
     const Error error = refusal(icosahedron(), params);
-    EXPECT_THAT(error.sentence(), HasSubstr("no face column 'corner-normals'"));
+    EXPECT_THAT(error.sentence(), HasSubstr("needs the face column 'corner-normals'; the mesh has none"));
     EXPECT_FALSE(error.hint().empty());
 }
 
@@ -120,7 +120,7 @@ TEST(APatchRefuses, NormalsOfAnEmptyCloud) {
     params.normals = PatchNormals::points;
     const PointCloud none;
     const Error error = error_of([&] { patched(icosahedron(), params, &none); });
-    EXPECT_EQ(error.sentence(), "`normals: points` needs points; there are none");
+    EXPECT_EQ(error.sentence(), "`normals: points` needs points; the input `points` is empty");
     EXPECT_FALSE(error.hint().empty());
 }
 
