@@ -24,20 +24,20 @@ namespace {
 using Matrix3 = Eigen::Matrix3d;
 using Points = std::vector<Vec3>;
 
-/// Largest accepted standard error of the rotation about any axis. Of 10,000 trials each with three or four points on a
-/// line of length 200 and noise from 0.001 to 1, it refuses 99.9 % or more; noise of 1 on the corners of a plate of
-/// 200 x 120 gives 0.5 degrees.
+/// Largest accepted standard error of the rotation about any axis. It refuses at least 99.9 % of 10,000 trials with
+/// three points on a line of length 200 and noise from 0.001 to 1, and as many with four points. Noise of 1 on the
+/// corners of a plate of 200 x 120 gives 0.5 degrees.
 constexpr double largest_angle = std::numbers::pi / 180;
 /// Residuals below this share of the points' extent are rounding.
 constexpr double rounding = 1e-12;
-/// A scale closer to 1 than this does not mean a wrong unit; scanners are calibrated less precisely.
+/// A scale closer to 1 than this does not indicate a wrong unit, because scanners are calibrated less precisely.
 constexpr double least_scale = 1e-4;
-/// One fit is clearly better than another if its residuals are this many times smaller.
+/// A fit is clearly better than another one if its residuals are smaller by this factor.
 constexpr double clear = 10;
-/// A scale explains residuals of which it leaves less than this. It leaves so little of pure noise on the corners of a
-/// plate in 0.15 % of 20,000 trials, and of the residuals of three pairs, which need the smaller number, in 0.5 %.
+/// A scale explains the residuals if it leaves less than this share of them. With pure noise this happens in 0.15 % of
+/// 20,000 trials for the corners of a plate. For three pairs, which need the smaller share, it happens in 0.5 %.
 constexpr double left_by_scale = 1.0 / 3, left_by_scale_of_three = 0.1;
-/// Residuals that are reported one by one.
+/// Number of residuals that are reported one by one.
 constexpr std::size_t most_residuals = 100;
 
 Vec3 mean_of(const Points& points) {
@@ -52,13 +52,13 @@ Points about(const Points& points, const Vec3& centre) {
     return result;
 }
 
-/// Pairs about their centroids, and the motion between them.
+/// Pairs relative to their centroids, and the rotation between them.
 struct Fit {
     Vec3 source_mean, target_mean;
     Points source, target;
     Matrix3 rotation;
-    /// Sums over the residuals' squared lengths: of the rotation, of the best reflection, and of the rotation with the
-    /// best scale.
+    /// Sums of the residuals' squared lengths after the rotation, after the best reflection, and after the rotation
+    /// with the best scale.
     double squares = 0, mirrored_squares = 0, scaled_squares = 0;
     double scale = 1;
 
@@ -72,8 +72,8 @@ double squares_of(const Fit& fit, const Matrix3& map) {
     return sum;
 }
 
-/// Kabsch: the singular value decomposition of the pairs' covariance, with the last axis turned where the product would
-/// be a reflection.
+/// Kabsch's method: the rotation comes from the singular value decomposition of the pairs' covariance. The last axis is
+/// reversed if the product would be a reflection.
 Fit fit_of(const Points& source, const Points& target) {
     Fit fit{mean_of(source), mean_of(target), {}, {}, Matrix3::Identity()};
     fit.source = about(source, fit.source_mean);
@@ -100,7 +100,7 @@ Fit fit_of(const Points& source, const Points& target) {
 
 double root_mean_square(double squares, std::size_t points) { return std::sqrt(squares / static_cast<double>(points)); }
 
-/// sigma of the contract.
+/// sigma in the documentation of align().
 double noise_of(const Fit& fit) { return std::sqrt(fit.squares / static_cast<double>(3 * fit.source.size() - 6)); }
 
 Matrix3 cross_matrix(const Vec3& v) {
@@ -109,20 +109,20 @@ Matrix3 cross_matrix(const Vec3& v) {
     return matrix;
 }
 
-/// J of the contract.
+/// J in the documentation of align().
 Matrix3 inertia_of(const Points& centred) {
     Matrix3 inertia = Matrix3::Zero();
     for (const Vec3& c : centred) inertia += c.squaredNorm() * Matrix3::Identity() - c * c.transpose();
     return inertia;
 }
 
-/// Root of the sum of the squared distances from the line that fits the points best: the root of the least moment of
-/// inertia.
+/// Root of the sum of the squared distances from the line that fits the points best. It equals the root of the smallest
+/// moment of inertia.
 double spread_about_line(const Points& centred) {
     Matrix3 scatter = Matrix3::Zero();
     for (const Vec3& c : centred) scatter += c * c.transpose();
     const Vec3 line = Eigen::JacobiSVD<Matrix3>(scatter, Eigen::ComputeFullU).matrixU().col(0);
-    // Summed over the distances: the roots of the moments lose half of the digits.
+    // Sums the distances, because roots of the moments lose half of the digits.
     double sum = 0;
     for (const Vec3& c : centred) sum += (c - c.dot(line) * line).squaredNorm();
     return std::sqrt(sum);
@@ -134,7 +134,7 @@ double extent_of(const Points& centred) {
     return largest;
 }
 
-/// Whether the best scale is not 1, and leaves little of residuals that are more than rounding.
+/// Whether the residuals are more than rounding, and the best scale explains them.
 bool is_scaled(const Fit& fit) {
     if (std::abs(fit.scale - 1) <= least_scale) return false;
     const std::size_t pairs = fit.source.size();
@@ -177,7 +177,7 @@ void require_pairs(const PointCloud& source, const PointCloud& target) {
             .hint("add corresponding points");
     require_cloud(source, "source");
     require_cloud(target, "target");
-    Frame named_alike = target.frame;  // the names differ, as a rule
+    Frame named_alike = target.frame;  // the two frames usually have different names
     named_alike.name = source.frame.name;
     require_same_frame(source.frame, "the source is", named_alike, "the target");
 }
@@ -198,26 +198,27 @@ void require_determined(const Fit& fit, std::string_view unit) {
     const double spread = std::min(spread_about_line(fit.source), spread_about_line(fit.target));
     if (spread > 0 && noise <= largest_angle * spread) return;
     const double pairs = static_cast<double>(fit.source.size());
-    // One degree of freedom fewer than noise_of().
+    // The scale takes one degree of freedom more than noise_of().
     const double scaled_noise = std::sqrt(fit.scaled_squares / (3 * pairs - 7));
     if (is_scaled(fit) && scaled_noise <= largest_angle * spread_about_line(fit.target))
         throw Error("{}", scale_text(fit, unit))
             .hint(
-                "one of the files has a wrong unit: `scanmill convert` with --unit and --to-unit writes it in another");
+                "one of the files has a wrong unit: `scanmill convert` with --unit and --to-unit writes it in another "
+                "unit");
     throw Error(
         "the {} pairs determine the rotation only to {} deg; 1 deg is needed: the points lie {:.4g} {} RMS from one "
         "line, and the residuals are {:.4g} {} RMS",
         fit.source.size(),
         spread > noise ? fmt::format("{:.3g}", noise / spread * 180 / std::numbers::pi) : std::string("more than 57"),
         spread / std::sqrt(pairs), unit, root_mean_square(fit.squares, fit.source.size()), unit)
-        .hint(fmt::format("use points that do not lie on a line; if they do not, check which points correspond, and "
-                          "the units: the best scale is {:.6g}",
+        .hint(fmt::format("use points that do not lie on a line, or check the correspondence of the points and the "
+                          "units; the best scale is {:.6g}",
                           fit.scale));
 }
 
 // Normals and rectangles.
 
-/// The unit normal of every row, zero where it has none; empty without a column of normals.
+/// By row: the vector in the column `normal`, or zero if it is not finite. Empty without such a column.
 std::optional<Points> normals_of(const PointCloud& cloud) {
     const Column* column = cloud.columns.find("normal");
     if (!column || column->components() != 3) return {};
@@ -245,18 +246,18 @@ void require_same_side(const PointCloud& source, const PointCloud& target, std::
         "the normals of all {} pairs{} point to opposite sides after the motion: the target is a mirror image of "
         "the source",
         compared, compared < partner.size() ? " that have them" : "")
-        .hint("the points of one file run the other way round; exchange its rows");
+        .hint("the points of the two files go around in opposite directions; reverse the rows of one file");
 }
 
-/// Twice the area vector of the polygon, which is counter-clockwise seen from its tip.
+/// Twice the area vector of the polygon. Seen from the tip of the vector, the polygon is counter-clockwise.
 Vec3 area_of(const Points& corners) {
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 0; i < corners.size(); ++i) area += corners[i].cross(corners[(i + 1) % corners.size()]);
     return area;
 }
 
-/// The area vector of the largest of the three polygons through the corners. It does not depend on their order, except
-/// for its sign.
+/// Twice the area vector of the largest of the three polygons through the corners. Only its sign depends on the order
+/// of the corners.
 Vec3 largest_area(const Points& c, std::string_view port) {
     Vec3 largest = Vec3::Zero();
     for (const Points& order :
@@ -268,15 +269,15 @@ Vec3 largest_area(const Points& c, std::string_view port) {
     return largest;
 }
 
-/// Whether the rows of four corners go once around: of corners row by row, whose polygon crosses itself, only noise
-/// gives the area a sign.
+/// Whether the polygon of four corners in the order of their rows goes once around. If the polygon crosses itself, only
+/// noise gives its area a sign.
 bool goes_around(const Vec3& area, const Vec3& largest) { return area.norm() > 0.5 * largest.norm(); }
 
-/// The unit normal of the plate on its upper side. See the contract for what decides.
+/// The unit normal of the plate on its upper side; see align() for how that side is determined.
 Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<Vec3>& given, bool rows_decide,
            std::string_view port) {
     const Vec3 largest = largest_area(corners, port), normal = largest.normalized(), by_rows = area_of(corners);
-    std::vector<std::pair<std::string_view, Vec3>> directions;  // the first one that decides
+    std::vector<std::pair<std::string_view, Vec3>> directions;  // in the order in which they are tried
     if (const std::optional<Points> normals = normals_of(cloud))
         if (const Vec3 mean = mean_of(*normals); mean.norm() > 0)
             directions.emplace_back("the mean normal of the corners", mean);
@@ -292,7 +293,7 @@ Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<V
     }
     const auto& [name, up] = directions.front();
     const double angle = angle_between(normal, up);
-    throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up", name,
+    throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg determine the upper side", name,
                 std::min(angle, std::numbers::pi - angle) * 180 / std::numbers::pi, port)
         .hint("give `up`, a direction that points away from the plate's upper side");
 }
@@ -301,7 +302,7 @@ Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<V
 std::array<u32, 4> order_around(const Points& centred, const Vec3& up, std::string_view port) {
     const Vec3 x = (centred[0] - up * up.dot(centred[0])).normalized(), y = up.cross(x);
     std::array<u32, 4> order{0, 1, 2, 3};
-    // The quadrant of an angle, then its tangent within it, ascend with the angle.
+    // A number from 0 to 4 that ascends with the angle from x, without trigonometric functions.
     const auto angle = [&](u32 row) {
         const double across = centred[row].dot(x), along = centred[row].dot(y),
                      size = std::abs(across) + std::abs(along);
@@ -318,17 +319,17 @@ std::array<u32, 4> order_around(const Points& centred, const Vec3& up, std::stri
     return order;
 }
 
-/// World coordinates.
+/// The world coordinates of `first-corner`.
 Vec3 first_corner_of(const AlignParams& params) {
     if (!params.first_corner)
-        throw Error("a rectangle fits its corners in 2 ways, half a turn apart, and `first-corner` is not given")
+        throw Error("`first-corner` is not given; a rectangle fits its corners in 2 ways, half a turn apart")
             .hint(
                 "give `first-corner`, a rough position in the source of the corner that belongs to the first target "
                 "point");
     return position_of(*params.first_corner, "`first-corner`");
 }
 
-/// The index in `order` of the corner near `position`, which is relative to the same point as the corners.
+/// The index in `order` of the corner nearest to `position`. The corners and `position` have one origin.
 std::size_t corner_near(const Points& corners, const std::array<u32, 4>& order, const Vec3& position,
                         std::string_view unit) {
     double shortest = std::numeric_limits<double>::infinity();
@@ -375,14 +376,14 @@ std::vector<u32> partners_in_rectangle(const PointCloud& source, const PointClou
         for (const u32 row : partners(turn)) paired.push_back(from[row]);
         return fit_of(paired, to).squares;
     };
-    // Half a turn fits as well, by symmetry; a quarter exchanges long and short sides.
+    // Half a turn fits equally well, by symmetry. A quarter turn exchanges long and short sides.
     const double chosen = squares(0), other = std::min(squares(1), squares(3));
     if (root_mean_square(chosen, 4) > std::max(clear * root_mean_square(other, 4), rounding * extent_of(to_centre)))
         throw Error(
             "with the corner at `first-corner` long sides meet short ones: residuals are {:.4g} {} RMS, and "
             "{:.4g} {} with a corner next to it",
             root_mean_square(chosen, 4), unit, root_mean_square(other, 4), unit)
-            .hint("`first-corner` is the corner of the source that belongs to the first point of the target");
+            .hint("give `first-corner` near the source corner that belongs to the first target point");
     return partners(0);
 }
 

@@ -16,33 +16,33 @@
 namespace scanmill {
 
 struct AlignParams {
-    /// The motion never scales.
+    /// Whether the best scale is reported as a check. The motion itself never scales.
     enum class Scale { none, report } scale = Scale::report;
-    /// rows: row i of the source belongs to row i of the target. rectangle: four corners each, in any order around the
-    /// rectangle.
+    /// rows: row i of the source belongs to row i of the target. rectangle: the source and the target each have four
+    /// corners, in any order.
     enum class Correspondence { rows, rectangle } correspondence = Correspondence::rows;
-    /// Rectangle: three world coordinates in the source, near the corner that belongs to the first target point. A
-    /// rectangle is its own image after half a turn; this decides which of the two is meant.
+    /// For `rectangle`: three world coordinates in the source, near the corner that belongs to the first target point.
+    /// They are needed because a rectangle also fits itself after half a turn.
     std::optional<std::vector<Length>> first_corner;
-    /// Rectangle: points away from the upper side of a plate without a column `normal`, in the source as in the target.
-    /// Absent: the order of the source's rows decides, else (0, 0, 1).
+    /// For `rectangle`: a direction away from the plate's upper side, in the source and in the target. It counts for
+    /// points without a column `normal`. If absent, the order of the source's rows decides, else (0, 0, 1).
     std::optional<std::vector<double>> up;
 };
 
-/// What `error_at_part` is computed for.
+/// The part for which `error_at_part` is computed.
 struct AlignPart {
     BoundingBox box;  ///< in world coordinates
-    std::string frame;  ///< its name
+    std::string frame;  ///< name of the part's frame
 };
 
 struct AlignResult {
     /// From the source's world coordinates to the target's; from and to are the names of their frames.
     RigidTransform transform;
-    /// The source row of every target row.
+    /// By target row: the row of its partner in the source.
     std::vector<u32> partner;
     /// Target minus moved source, by target row.
     std::vector<Vec3> residuals;
-    /// Root of the mean squared length of the residuals; the largest length.
+    /// Root mean square of the residuals' lengths, and the largest length.
     double rms = 0, largest_residual = 0;
     /// Size of the target relative to the source by Umeyama's method: 1 where both are equally large.
     double scale = 1;
@@ -50,31 +50,37 @@ struct AlignResult {
     std::optional<double> error_at_part;
 };
 
-/// Least squares: the rotation R (never a reflection) and the translation t with the smallest sum of squared residuals
-/// |b_i - R a_i - t|² over the pairs of source a_i and target b_i, weighted equally.
+/// Finds the motion by least squares: the rotation R (never a reflection) and the translation t with the smallest sum
+/// of squared residuals |b_i - R a_i - t|² over the pairs of source a_i and target b_i, weighted equally.
 ///
-/// Standard error at a point x of the source: sigma sqrt(3/n + tr([x - m] J^-1 [x - m]^T)), where m is the source's
-/// centroid, [v] the cross-product matrix, J = sum(|c|² I - c c^T) over c = a_i - m, and sigma² = sum|residual|² /
-/// (3 n - 6). The error grows with the distance between the part and the pairs, whatever the residuals are.
+/// The standard error at a point x of the source is sigma sqrt(3/n + tr([x - m] J^-1 [x - m]^T)). Here m is the
+/// source's centroid, [v] the cross-product matrix of v, J = sum(|c|² I - c c^T) over c = a_i - m, and sigma² =
+/// sum|residual|² / (3 n - 6). With equal residuals, the error grows with the distance between the part and the pairs.
 ///
-/// Rectangle: both corner lists are brought in counter-clockwise order seen from their upper sides. The upper side is
-/// that of the mean of the column `normal`; else that of `up`, if it is given; else, of the source, the side from which
-/// its rows go counter-clockwise, if they go once around (the area of the polygon is more than half of that of the
-/// largest of the three possible ones); else that of (0, 0, 1). A direction more than 60 degrees off the plate's normal
-/// does not decide: the next one does, but the rows only where there are no normals. The source corner nearest to
-/// `first_corner` belongs to the first target point. Ties: of equally near corners none is chosen; that is refused.
+/// For `rectangle`, each corner list is put in counter-clockwise order seen from its upper side. The first of these
+/// directions that is at most 60 degrees off the plate's normal determines the upper side:
+/// - the mean of the column `normal`;
+/// - `up`, if it is given;
+/// - for a source without normals, the side from which its rows go counter-clockwise, if they go once around: the area
+///   of their polygon is more than half of that of the largest of the three possible polygons;
+/// - (0, 0, 1), if there is no other direction.
+/// The source corner nearest to `first_corner` belongs to the first target point. Ties: if two corners are equally
+/// near, Error is thrown.
 ///
-/// Throws Error for fewer than 3 pairs, different numbers of points, NaN or infinite coordinates, different units; for
-/// pairs that fit ten times better after mirroring; for pairs that leave the rotation uncertain by more than 1 degree
-/// (standard error), as all pairs on a line do; for rows whose normals all point to opposite sides after the motion
-/// (without rows that have no normal, or NaN); for a part in another frame than the source. Rectangle: other numbers
-/// than 4 corners, no `first_corner`, one that is not nearer than half the shorter side to a corner, corners that do
-/// not go once around a centre, an upper side that cannot be decided, and sides that fit another choice of the corner
-/// better.
+/// Throws Error in these cases:
+/// - There are fewer than 3 pairs, different numbers of points, NaN or infinite coordinates, or different units.
+/// - The pairs fit ten times better after a reflection.
+/// - The pairs leave the rotation uncertain by more than 1 degree (standard error), as all pairs on a line do.
+/// - The normals of all pairs point to opposite sides after the motion. Pairs without a finite normal do not count.
+/// - The part is empty, or in another frame than the source.
+/// - `first_corner` is given for `rows`.
+/// - For `rectangle`, there are not 4 corners, or the corners do not go once around a centre.
+/// - For `rectangle`, `first_corner` is missing, or its distance to a corner is not less than half the shorter side.
+/// - For `rectangle`, no direction determines the upper side, or a corner next to the chosen one fits much better.
 ///
-/// A scale that differs from 1 by more than 1e-4 explains the residuals if it leaves less than a third of them (RMS),
-/// of three pairs less than a tenth. If `scale` is reported, such a result is doubtful. If with that scale the rotation
-/// would be certain, the refusal names the scale.
+/// A scale explains the residuals if it differs from 1 by more than 1e-4, and leaves less than a third of their RMS;
+/// for three pairs, less than a tenth. If `scale` is `report`, the result is then doubtful. If the rotation is
+/// uncertain, but would be certain with that scale, the Error contains the scale.
 ///
 /// Cost: O(n). Metrics: `rms`, `largest-residual`, `residual` (numbered, of the first 100 target rows), `scale` if it
 /// is reported, `error-at-part` if there is a part.

@@ -30,36 +30,38 @@ SCANMILL_FILTER() {
         .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>("source", "The points that are moved, such as the corners of a plate in a scan.")
         .in<PointCloud>("target", "The corresponding points, such as the same corners measured by a machine.")
-        .in<PointCloud, TriangleMesh>("part", "What will be moved, in the frame of the source: for `error-at-part`.",
-                                      optional)
+        .in<PointCloud, TriangleMesh>(
+            "part", "The part that will be moved, in the source's frame; for `error-at-part`.", optional)
         .out<RigidTransform>("transform", "From the frame of the source to that of the target; it never scales.")
         .choice("scale", &P::scale,
-                {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` not computed."},
+                {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` is not computed."},
                  {"report", P::Scale::report,
                   "The metric `scale` is the size of the target relative to the source. The result is doubtful if this "
-                  "scale differs from 1 by more than 0.0001 and leaves less than a third of the residuals (of three "
+                  "scale differs from 1 by more than 0.0001 and leaves less than a third of the residuals (with three "
                   "pairs, less than a tenth)."}},
-                "The scale that would fit best, as a check of the units; the transform does not contain it.")
+                "Whether the scale that would fit best is reported, as a check of the units; the transform does not "
+                "contain it.")
         .choice("correspondence", &P::correspondence,
                 {{"rows", P::Correspondence::rows, "Row i of the source belongs to row i of the target."},
                  {"rectangle", P::Correspondence::rectangle,
-                  "Each has the four corners of a rectangle, in any order; needs `first-corner`."}},
-                "Which points belong together.")
+                  "The source and the target each have the four corners of a rectangle, in any order; needs "
+                  "`first-corner`."}},
+                "Decides which source and target points belong together.")
         .param("first-corner", &P::first_corner,
-               "x, y, z of a rough position in the source of the corner that belongs to the first target point.",
+               "x, y, z of a rough position in the source, near the corner that belongs to the first target point.",
                size(3))
         .param(
             "up", &P::up,
-            "Rectangle: a direction away from the upper side of a plate whose points have no normals, in the source as "
-            "in the target. Without it, a source whose rows go around the plate has them counter-clockwise seen from "
-            "above, and other plates face (0, 0, 1).",
+            "For `rectangle`: a direction away from the upper side of a plate whose points have no normals, in the "
+            "source and in the target. Without it, the rows of a source that go around the plate are counter-clockwise "
+            "seen from above; other plates face (0, 0, 1).",
             size(3))
-        .metric("rms", Unit::length, "Distance of the target points from their moved partners, root mean square.",
+        .metric("rms", Unit::length, "Root mean square distance of the target points from their moved partners.",
                 headline, smaller_is_better)
         .metric("largest-residual", Unit::length,
                 "Distance of the target point that stays farthest from its moved partner.", headline, smaller_is_better)
-        .metric("residual", Unit::length, "The same distance of each of the first 100 target points.", numbered,
-                smaller_is_better)
+        .metric("residual", Unit::length, "Distance of each of the first 100 target points from its moved partner.",
+                numbered, smaller_is_better)
         .metric("error-at-part", Unit::length,
                 "Standard error of a moved point, the largest over the corners of the part's bounding box.", headline,
                 smaller_is_better)

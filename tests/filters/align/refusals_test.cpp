@@ -143,7 +143,7 @@ TEST(AlignRefusals, ARectangleWithoutFirstCorner_IsAmbiguous) {
     AlignParams params = in_rectangle(plate()[0]);
     params.first_corner.reset();
     EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), params).sentence(),
-              "a rectangle fits its corners in 2 ways, half a turn apart, and `first-corner` is not given");
+              "`first-corner` is not given; a rectangle fits its corners in 2 ways, half a turn apart");
 }
 
 TEST(AlignRefusals, FirstCornerWithRows_IsRefused) {
@@ -195,12 +195,12 @@ TEST(AlignRefusals, CornersOnOneLine_AreNotARectangle) {
 TEST(AlignRefusals, AnUprightPlate_NeedsUp) {
     const std::vector<Vec3> upright{{-100, 0, -60}, {100, 0, -60}, {100, 0, 60}, {-100, 0, 60}};
     EXPECT_EQ(refusal(cloud(plate()), cloud(upright), in_rectangle(plate()[0])).sentence(),
-              "`up` is 90 deg off the normal of the plate at 'target'; at most 60 deg decide which side is up");
+              "`up` is 90 deg off the normal of the plate at 'target'; at most 60 deg determine the upper side");
     PointCloud slanted = cloud(plate());
     slanted.columns.add(Column("normal", 3, Buffer<double>{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}));
     EXPECT_EQ(refusal(slanted, cloud(plate()), in_rectangle(plate()[0])).sentence(),
-              "the mean normal of the corners is 90 deg off the normal of the plate at 'source'; at most 60 deg decide "
-              "which side is up");
+              "the mean normal of the corners is 90 deg off the normal of the plate at 'source'; at most 60 deg "
+              "determine the upper side");
     AlignParams given = in_rectangle(plate()[0]);
     given.up = {0, 0, 1};
     EXPECT_EQ(aligned(slanted, cloud(plate()), given).partner[0], 0u) << "as the hint says";
