@@ -25,7 +25,7 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
     if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
     if (tets.neighbours.size() != tets.cells.size())
         throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size())
-            .hint("'delaunay' makes them");
+            .hint("'delaunay' computes the neighbours");
     const double coverage = params.coverage.value();
     if (!(coverage > 0 && coverage <= 1))
         throw Error("coverage must be above 0 % and at most 100 %; it is {}", params.coverage.text());
@@ -38,19 +38,19 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
             .hint("`delaunay: {weights: spacing}` computes them");
 }
 
-/// A radius whose square is not below `squared`, so that giving it as alpha selects the same cells.
+/// A radius whose square is not below `squared`. As a given alpha, it selects the same cells.
 double radius(double squared) {
     const double root = std::sqrt(squared);
     return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
 }
 
-/// The shortest decimal that is not below the radius and, unless that takes many digits, only slightly above it.
+/// A short decimal number that is not below the radius, and only slightly above it.
 std::string text_from(double squared) { return text_within({radius(squared), std::numeric_limits<double>::max()}, 0); }
 
 [[noreturn]] void refuse_without_cells(const SweepResult& sweep, const Length& alpha, const Frame& frame) {
     const std::string_view unit = symbol(frame.unit);
     throw Error(
-        "alpha {} leaves no cell inside; the first is inside from {} {}, and from {} {} cells cover {} of {} points",
+        "alpha {} leaves no cell inside; the first cell enters at {} {}, and from {} {} cells cover {} of {} points",
         alpha.text(), text_from(sweep.values.back()), unit, text_from(sweep.cover), unit, sweep.needed, sweep.points)
         .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
 }
@@ -106,17 +106,19 @@ void set_metrics(const AlphaSolidResult& result, Context& context) {
 
 // Warnings.
 
-/// Clean scans have a valid solid at alpha_cover itself; where the first valid one is this factor above it, it has
-/// often closed a hole.
+/// Clean scans have a valid solid at alpha_cover itself. If alpha is larger by this factor, the solid has often closed
+/// a hole.
 constexpr double ambiguous_factor = 1.1;
-/// On clean scans alpha is near the length of the boundary's edges; this multiple spans a gap or includes outliers.
+/// On clean scans alpha is near the length of the boundary's edges. A ball larger by this factor spans a gap or
+/// includes outliers.
 constexpr double ambiguous_edges = 3;
-/// With grooves complete scans reach 5.3 (the merged bunny, across the holes of its base); blobs begin at 9.
+/// Complete scans with grooves reach 5.3 (the merged bunny, across the holes of its base). Solids that have lost the
+/// object's shape begin at 9.
 constexpr double doubtful_edges = 7;
 
 std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
 
-/// Reports that more points are outside than the share allows; empty when not.
+/// Reports that more points are outside than the share allows; empty otherwise.
 std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidParams& params) {
     const std::size_t points = result.tets.positions.size() - result.hidden_points.size();
     const std::size_t outside = result.uncovered_points.size();
@@ -128,7 +130,7 @@ std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidPar
     return text + fmt::format(", more than the {} that coverage {} allows", allowed, params.coverage.text());
 }
 
-/// The defects of the solid at a given alpha, and the nearest valid alpha.
+/// Reports the defects of the solid at a given alpha, and the nearest valid alpha.
 std::string wrong_alpha_text(const AlphaSolidResult& result, const AlphaSolidParams& params) {
     const std::string_view unit = unit_of(result);
     std::vector<std::string> faults;
@@ -141,14 +143,15 @@ std::string wrong_alpha_text(const AlphaSolidResult& result, const AlphaSolidPar
     if (params.components == AlphaComponents::single && result.components > 1)
         faults.push_back(fmt::format("it has {} components", result.components));
     const double alpha = result.alpha, least = result.nearest_valid->least;
-    return fmt::format("at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
-                       params.alpha->text(), enumerated(faults), text_within(*result.nearest_valid, alpha), unit,
-                       least > max_scan * result.alpha_cover && least > alpha
-                           ? ", far above what covers the points: 'alpha: auto' repairs a smaller solid instead"
-                           : "");
+    return fmt::format(
+        "at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
+        params.alpha->text(), enumerated(faults), text_within(*result.nearest_valid, alpha), unit,
+        least > max_scan * result.alpha_cover && least > alpha
+            ? ", far above the alpha that covers the points; 'alpha: auto' repairs a smaller solid instead"
+            : "");
 }
 
-/// Per vertex of the boundary, alpha² less the squared radius of the ball there: 0 without weights.
+/// Per vertex of the boundary: alpha² minus the squared radius of the ball there. 0 without weights.
 std::vector<double> weight_deficits(const AlphaSolidResult& result) {
     const Buffer<double>& weights = result.tets.weights;
     std::vector<double> deficits(result.mesh.positions.size(), 0.0);
@@ -163,8 +166,8 @@ std::vector<double> weight_deficits(const AlphaSolidResult& result) {
     return deficits;
 }
 
-/// The median ratio of the ball's radius to the length of the boundary's edges, over the edges of some ten thousand
-/// evenly spread triangles. Pre: there are triangles.
+/// The median ratio of the ball's radius to the length of the boundary's edges, in a sample of evenly spread triangles.
+/// Pre: there are triangles.
 double radius_in_edges(const AlphaSolidResult& result) {
     const TriangleMesh& mesh = result.mesh;
     const std::vector<double> deficits = weight_deficits(result);
@@ -180,7 +183,7 @@ double radius_in_edges(const AlphaSolidResult& result) {
     return median(ratios);
 }
 
-/// Signs that a chosen alpha is too large. `edges`: radius_in_edges().
+/// Reports signs that a chosen alpha is too large. `edges` is the result of radius_in_edges().
 std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result, double edges) {
     const std::string_view unit = unit_of(result);
     std::vector<std::string> signs;
@@ -207,8 +210,8 @@ std::string ambiguity_text(const AlphaSolidResult& result, double edges) {
                                     by_count(result.interior_points.size(), "lies", "lie")));
     if (signs.empty()) return {};
     return enumerated(signs) +
-           ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can; "
-           "outlier-removal before, a lower coverage, or more points in gaps and thin parts allow a smaller alpha";
+           ": gaps and hollows narrower than 2 alpha may be filled, even between parts; sculpt reopens some of them; "
+           "to allow a smaller alpha, remove outliers before, lower the coverage, or add points in gaps and thin parts";
 }
 
 /// Reports points and cells that are not in the solid; empty when none is missing.
@@ -224,19 +227,19 @@ std::string missing_text(const AlphaSolidResult& result) {
 /// Reports that no alpha-solid was valid, and how one was repaired.
 std::string repair_text(const AlphaSolidResult& result, const AlphaSolidParams& params) {
     const std::string_view unit = unit_of(result);
-    // A solid that leaves points out may be valid at a slightly larger alpha, so only smaller ones are ruled out.
+    // A solid that leaves points out may be valid at a slightly larger alpha. Only smaller values are excluded.
     const bool may_leave_out = params.components == AlphaComponents::single && params.coverage.value() < 1;
     const std::string none =
         may_leave_out
-            ? fmt::format("no alpha below {:.4g} {} gives a manifold boundary round enough points", result.alpha, unit)
+            ? fmt::format("no alpha below {:.4g} {} gives a manifold boundary around enough points", result.alpha, unit)
             : fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary",
                           max_scan * result.alpha_cover, unit);
     if (result.choice == AlphaChoice::hull)
         return fmt::format(
-            "{}, and closing the solid at {:.4g} {} round its non-manifold vertices filled the convex hull; more "
+            "{}, and closing the solid at {:.4g} {} around its non-manifold vertices filled the convex hull; more "
             "points, or a coverage below 100 % that ignores outliers, allow a smaller alpha",
             none, result.alpha, unit);
-    return fmt::format("{}; the solid at {:.4g} {} was closed round its non-manifold vertices", none, result.alpha,
+    return fmt::format("{}; the solid at {:.4g} {} was closed around its non-manifold vertices", none, result.alpha,
                        unit);
 }
 
@@ -255,7 +258,7 @@ void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, 
     const double edges = radius_in_edges(result);
     const std::string text = ambiguity_text(result, edges);
     const bool is_far_too_large = edges >= doubtful_edges && result.choice != AlphaChoice::given;
-    // sculpt may bring points inside to the surface, but does not open what a far too large alpha joined.
+    // sculpt may bring the surface to points inside, but it does not separate what a far too large alpha joined.
     if (is_far_too_large || 2 * result.interior_points.size() > result.tets.positions.size())
         context.doubt(text, is_far_too_large ? "" : "mesh");
     else if (!text.empty())

@@ -3,15 +3,18 @@
 /// The alpha-solid: the part of a Delaunay tetrahedralisation that a ball of radius alpha cannot enter from outside,
 /// with alpha chosen automatically.
 ///
-/// A facet is a wall at alpha when it belongs to the alpha-shape: when its smallest circumscribed sphere, or, if that
-/// contains an opposite vertex, the smaller of its cells' spheres, has a radius of at most alpha. The solid is every
-/// cell that cannot be reached from outside without crossing a wall; what walls enclose is solid, so it has no
-/// cavities. Growing alpha grows the solid.
+/// A facet is a wall at alpha if it belongs to the alpha-shape: if the radius of its sphere is at most alpha. The
+/// sphere of a facet is its smallest circumscribed sphere. If that contains an opposite vertex, the smaller of the
+/// circumscribed spheres of the facet's cells takes its place. The solid is every cell that cannot be reached from
+/// outside without crossing a wall. Therefore it has no cavities. A larger alpha gives a larger solid.
 ///
-/// A solid is valid when the requested share of the points is in or on it, its boundary is a closed 2-manifold (every
-/// vertex's triangles form exactly one closed fan) and, for `single`, it is connected. From alpha_cover on, all larger
-/// alphas have the first property, but may lose the second. So the scan starts at alpha_cover and adds the cells of one
-/// value after the other, testing only the vertices that they touch, until the first valid solid.
+/// A solid is valid if it meets these conditions:
+/// - The requested share of the points is in or on it.
+/// - Its boundary is a closed 2-manifold: the triangles of every vertex form exactly one closed fan.
+/// - For `single`, it is connected.
+/// From alpha_cover on, every alpha meets the first condition, but a larger alpha may not meet the second one.
+/// Therefore the scan starts at alpha_cover and adds the cells of one value after the other until the solid is valid.
+/// It tests only the vertices of the added cells.
 ///
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 
@@ -30,13 +33,14 @@ enum class AlphaSearch {
 };
 
 enum class AlphaComponents {
-    single,  ///< one solid: alpha grows until all are joined; with coverage below 100 %, solids other than the one with
-             ///< the most points are left out
+    /// One solid. With full coverage, alpha grows until all solids are joined. With less, only the solid with the most
+    /// points is kept.
+    single,
     many  ///< any number of solids
 };
 
 struct AlphaSolidParams {
-    /// The radius; absent: the least that gives a valid solid.
+    /// The radius. If absent, the smallest radius that gives a valid solid.
     std::optional<Length> alpha;
     AlphaSearch search = AlphaSearch::scan;
     AlphaComponents components = AlphaComponents::single;
@@ -44,93 +48,96 @@ struct AlphaSolidParams {
     Ratio coverage = Ratio::percent(100);
 };
 
-/// How alpha and the solid were found.
+/// Describes how alpha and the solid were found.
 enum class AlphaChoice {
     scan,  ///< a plain alpha-solid, the first valid one
     binary,  ///< a plain alpha-solid found by bisection
-    repaired,  ///< cells were added round the non-manifold vertices of a plain alpha-solid
-    hull,  ///< repaired, and the added cells made it the whole tetrahedralisation
-    given  ///< alpha was given; its boundary may have any defect
+    repaired,  ///< cells were added around the non-manifold vertices of a plain alpha-solid
+    hull,  ///< repaired, and with the added cells the solid is the whole tetrahedralisation
+    given  ///< alpha was given; the solid's boundary may have any defect
 };
 
-/// Radii that all give the same alpha-solid, both ends included; `largest` is infinite for the whole
+/// An interval of radii, both ends included, that all give the same alpha-solid. `largest` is infinite for the whole
 /// tetrahedralisation.
 struct AlphaInterval {
     double least = 0, largest = 0;
 };
 
-/// Solids that are separate at an alpha smaller than the one that joins them.
+/// The number of solids that are separate at `alpha`, and joined at a larger alpha.
 struct SeparateSolids {
     std::size_t count = 0;
     double alpha = 0;
 };
 
 struct AlphaSolidResult {
-    /// The solid's boundary over only its own vertices (in input order, columns carried), outward, closed. Triangles
-    /// ascend by cell, then by facet.
+    /// The solid's boundary, closed and outward. Its vertices are those on the boundary, in input order and with their
+    /// columns. Triangles ascend by cell, then by facet.
     TriangleMesh mesh;
-    /// The input with `inside` labelled.
+    /// The input, with `inside` set for the cells of the solid.
     TetMesh tets;
-    /// A radius in the scan's unit; giving it as the parameter gives the same alpha-solid (before any repair).
+    /// The radius in the scan's unit. If it is given as a parameter, the alpha-solid is the same, before any repair.
     double alpha = 0;
     /// The least alpha at which the requested share of the points is in or on the alpha-solid.
     double alpha_cover = 0;
     std::size_t cells_inside = 0;
-    /// The number of different alpha-solids from alpha_cover (or a given alpha that is smaller) up to the whole
-    /// tetrahedralisation, both included: the different values at which cells enter. Those below alpha_cover leave
-    /// points out and are not counted.
+    /// The number of different alpha-solids from alpha_cover, or from a smaller given alpha, up to the whole
+    /// tetrahedralisation, both included. It is the number of different values at which cells enter.
     std::size_t spectrum = 0;
-    /// Vertex indices of the input, ascending. Interior: inside the solid but not on its boundary. Uncovered: in no
-    /// cell of the solid.
+    /// Vertex indices of the input, ascending. Interior points are inside the solid but not on its boundary. Uncovered
+    /// points are in no cell of the solid.
     Buffer<u32> interior_points, uncovered_points;
-    /// Vertex indices of the input, ascending, of points in no cell at all, because weights hide them. Every other
-    /// point is interior, uncovered or on the boundary. Coverage ignores hidden points.
+    /// Vertex indices of the input, ascending. Hidden points are in no cell at all, because of their weights. Every
+    /// other point is interior, uncovered or on the boundary. Coverage ignores hidden points.
     Buffer<u32> hidden_points;
-    /// Components of the boundary that share no vertex; for a manifold boundary, the number of separate solids.
+    /// Number of components of the boundary that share no vertex. For a manifold boundary, it is the number of separate
+    /// solids.
     std::size_t components = 0;
-    /// Cells of smaller solids that `single` left out.
+    /// Number of cells in smaller solids that `single` left out.
     std::size_t cells_left_out = 0;
     AlphaChoice choice = AlphaChoice::scan;
-    /// Edges with more than two boundary triangles, and vertices whose boundary triangles are not exactly one closed
-    /// fan. Above 0 for a given alpha only.
+    /// Number of edges with more than two boundary triangles, and of vertices whose boundary triangles do not form
+    /// exactly one closed fan. They can be above 0 only for a given alpha.
     std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
-    /// Present when alpha was given and its solid is not valid: the radii nearest to it whose solid is.
+    /// The radii nearest to the given alpha that give a valid solid; present if the given alpha does not.
     std::optional<AlphaInterval> nearest_valid;
-    /// Present when alpha grew, for `single` with all points, to join solids that `many` keeps separate.
+    /// The solids that `many` would keep separate; present if alpha grew, for `single` with full coverage, to join
+    /// them.
     std::optional<SeparateSolids> separate;
 };
 
-/// Finds the smallest alpha whose solid is valid. When no alpha up to four times alpha_cover has one, the solid at
-/// alpha_cover (for `single` the first connected one above) is repaired: round every non-manifold vertex the cells with
-/// the least value are added until none is left; cavities that this seals become solid.
+/// Finds the smallest alpha whose solid is valid. If no alpha up to four times alpha_cover gives a valid solid, the
+/// solid at alpha_cover is repaired; for `single`, the first connected solid from alpha_cover on. The repair adds,
+/// around every non-manifold vertex, the cells with the smallest value, until no such vertex is left. Cavities that the
+/// added cells enclose become solid.
 ///
-/// With `search: scan` alpha does not fall when coverage rises: a valid solid for one share is valid for every smaller
-/// one, and where a repair for all points starts at a smaller alpha, from components that merely touch, the scan takes
-/// that. Bisection gives no such guarantee.
+/// With `search: scan`, alpha does not fall when coverage rises, because a valid solid for one share is valid for every
+/// smaller share. A repair for all points may start at a smaller alpha, from components that merely touch; then the
+/// scan takes that repair. Bisection gives no such guarantee.
 ///
-/// A given alpha is used unchanged. When its solid is not valid, the nearest alpha that is valid is searched by the
-/// same scan, from alpha_cover past the given alpha.
+/// A given alpha is used unchanged. If its solid is not valid, the same scan searches for the nearest valid alpha, from
+/// alpha_cover past the given alpha.
 ///
-/// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, with all weights
-/// lowered by the largest: alpha is the ball's radius where the weight is largest, and at a point of weight w the ball
-/// acts with the radius sqrt(alpha² - (largest - w)), or not at all when that is not a number. With `weights: spacing`
-/// and factor 1 alpha is about one spacing where the sampling is coarsest; smaller factors allow a smaller alpha, and
+/// With weights (TetMesh::weights), radii are those of spheres orthogonal to weighted points, after the largest weight
+/// is subtracted from all. alpha is the ball's radius where the weight is largest. At a point of weight w, the ball has
+/// the radius sqrt(alpha² - (largest - w)); where that is not a number, the ball does not act. With `weights: spacing`
+/// and factor 1, alpha is about one spacing where the sampling is coarsest. Smaller factors allow a smaller alpha, and
 /// the ball then shrinks less. Equal weights change no byte.
 ///
-/// Pre:  a tetrahedralisation made by delaunay(), its weights finite and 0 or more; alpha above 0; coverage in (0, 1].
-///       Throws Error with numbers, also when the given alpha leaves no cell inside.
-/// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
-///       values enter together. Facets that are congruent but oriented differently may differ in the last bits, and
-///       then enter one after the other. So the solid depends neither on the order of the points nor on the number of
-///       threads. A point exactly on a facet's smallest circumsphere does not attach the facet.
-/// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 80 bytes
-///       per cell beside the result, and 50 more for `single` with coverage below 100 %.
+/// Pre:  a tetrahedralisation made by delaunay(); weights are finite and 0 or more; alpha is above 0; coverage is in
+///       (0, 1]. Otherwise throws Error with numbers. Also throws Error if a given alpha leaves no cell inside.
+/// Post: see AlphaSolidResult. The solid depends neither on the order of the points nor on the number of threads. Facet
+///       values are computed from corners sorted by coordinates, and compared exactly. Facets of equal value enter
+///       together. The values of congruent facets with different orientations may differ in the last bits; then these
+///       facets enter one after the other. A point exactly on a facet's smallest circumsphere does not attach the
+///       facet.
+/// Cost: O(n log n) time in the worst case; for surface scans about linear in the number of cells outside the solid.
+///       About 80 bytes per cell beside the result, and 50 more for `single` with coverage below 100 %.
 /// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles.
 /// Warnings, one sentence each: a given alpha whose solid is not valid, with the nearest valid alpha; points and cells
-/// left out; separate solids that were joined; a repaired or hull solid; and an ambiguous choice: points inside, or a
-/// chosen alpha far above alpha_cover or the boundary's edges.
-/// Doubts: a chosen alpha of at least seven of the boundary's edges. About the mesh only, because sculpt may still
-/// improve the solid: more than half of the points inside, and doubts_about_surface().
+/// left out; separate solids that were joined; a repaired or hull solid; points inside; and a chosen alpha far above
+/// alpha_cover or above the length of the boundary's edges.
+/// Doubts: a chosen alpha of at least seven times the boundary's median edge. The other doubts concern the mesh only,
+/// because sculpt may still improve the solid: more than half of the points inside, and doubts_about_surface().
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

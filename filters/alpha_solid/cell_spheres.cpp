@@ -18,27 +18,27 @@ namespace scanmill::alpha {
 
 namespace {
 
-/// Offsets as short as this occur between near-duplicates only; products of shorter ones could underflow, which the
+/// Offsets as short as this occur only between near-duplicates. Products of shorter offsets could underflow, which the
 /// error bounds below do not cover.
 constexpr double least_size = 1e-45;
 
 // Exact arithmetic, for the few cases that doubles cannot decide; a thousand times slower.
 
-/// Holds every double and is closed under + − ×. Mpzf is faster and needs GMP.
+/// A number type that holds every double and is closed under + − ×. Mpzf is faster and needs GMP.
 #ifdef CGAL_HAS_MPZF
 using Exact = CGAL::Mpzf;
 #else
 using Exact = CGAL::MP_Float;
 #endif
 
-/// mantissa · 2^exponent, the mantissa 0 or far from the ends of double's range.
+/// The number mantissa · 2^exponent. The mantissa is 0 or far from the ends of double's range.
 struct Leading {
     double mantissa;
     int exponent;
 };
 
-/// The first digits of a number. Products of many lengths can lie far outside double's range where short and long
-/// offsets meet in one cell.
+/// The first digits of a number. Products of many lengths can lie far outside double's range if one cell has short and
+/// long offsets.
 Leading leading(Exact number) {
     constexpr int step = 512;
     Leading result{CGAL::to_double(number), 0};
@@ -99,8 +99,8 @@ bool exactly_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 
 // Without weights.
 
-/// A double result is accepted where cancellation has left at least this share of the terms, squared; the rest is
-/// computed exactly.
+/// A result in doubles is accepted if cancellation leaves at least this share of the terms; both are squared. Other
+/// results are computed exactly.
 constexpr double squared_share = 1e-12;
 
 bool can_underflow(double least_square) { return !(least_square > least_size * least_size); }
@@ -113,7 +113,7 @@ struct Corner {
     u32 number;
 };
 
-/// Sorts two corners by coordinates, without a branch but for equal x.
+/// Sorts two corners by coordinates. Branches only if their x are equal.
 void order(Corner& a, Corner& b) {
     const double ax = a.position->x(), bx = b.position->x();
     const bool swap = ax == bx ? tie_broken_less(*b.position, *a.position) : bx < ax;
@@ -132,7 +132,7 @@ double facet_value(const Offset<double>& u, const Offset<double>& v, double uu, 
     return exact_squared_circumradius(a, b, c);
 }
 
-/// The cell in sorted corners a, b, c, d with offsets u, v, w from a.
+/// A cell with sorted corners a, b, c, d. The offsets of b, c and d from a are u, v and w.
 class SortedCell {
 public:
     explicit SortedCell(const std::array<Corner, 4>& corners)
@@ -154,7 +154,7 @@ public:
         centre_ = circumcentre_numerator(uu_, vv_, ww_, vw_, wu_, uv_);
     }
 
-    /// Opposite to a, b, c, d.
+    /// The squared circumradii of the facets opposite to a, b, c, d.
     std::array<double, 4> facet_values() const {
         const auto [cb, db] = offsets_from(b_, c_, d_);
         return {facet_value(cb, db, dot(cb, cb), dot(db, db), cross(cb, db), b_, c_, d_),
@@ -170,12 +170,13 @@ public:
         return exact_squared_circumradius(a_, b_, c_, d_);
     }
 
-    /// Which of a, b, c, d lie inside the smallest sphere round the facet opposite to them.
+    /// For a, b, c, d: whether the corner lies inside the smallest sphere around the facet opposite to it.
     std::array<bool, 4> attached() const {
-        // Barycentric coordinates of the circumcentre, times 2 volume². With u, v, w short for the offsets' largest
-        // components: the monomials of the last three sum to at most 36 uvw (u + v + w) times vw, wu or uv in absolute
-        // value, and pass at most 19 roundings each, the offsets' included; those of the first to at most
-        // 44 uvw (u + v + w) (vw + wu + uv) and 22 roundings. 22 · 44 · 2^-53 < 1.1e-13 covers all four.
+        // Barycentric coordinates of the circumcentre, times 2 volume². Let u, v, w be the largest components of the
+        // offsets. In each of the last three coordinates, the absolute values of the monomials sum to at most 36 uvw (u
+        // + v + w) times vw, wu or uv. Each monomial has at most 19 roundings, including those of the offsets. In the
+        // first coordinate, they sum to at most 44 uvw (u + v + w) (vw + wu + uv), with at most 22 roundings. 22 · 44 ·
+        // 2^-53 < 1.1e-13 covers all four coordinates.
         const double u = largest(u_), v = largest(v_), w = largest(w_);
         const double bound = std::min({u, v, w}) > least_size
                                  ? 1.1e-13 * (u * v * w * (u + v + w) * (v * w + w * u + u * v))
@@ -205,12 +206,12 @@ private:
 
 // With weights.
 
-/// Rounds outwards while the processor's rounding mode is upwards.
+/// An interval that rounds outwards while the processor's rounding mode is upwards.
 using Interval = CGAL::Interval_nt<false>;
 
 using WeightedCorners = std::array<WeightedPoint, 4>;
 
-/// The corners of facet i of a cell, the one with the lowest number first, then the opposite corner.
+/// For facet i of a cell: its three corners, ascending, then the opposite corner.
 constexpr std::array<std::array<int, 4>, 4> facet_and_apex{{{1, 2, 3, 0}, {0, 2, 3, 1}, {0, 1, 3, 2}, {0, 1, 2, 3}}};
 
 /// Corners of a cell or facet relative to their first one, in some number type and in units of 2^exponent.
@@ -286,7 +287,8 @@ double exact_cell_value(const WeightedCorners& corners, double largest) {
     return quotient(cell_fraction(corners, RelativeTo<Exact>(corners[0], exponent), largest), exponent);
 }
 
-/// Whether corner i attaches the facet opposite to it: whether the centre of the cell's sphere lies beyond that facet.
+/// For each corner: whether it attaches the facet opposite to it. It does if the centre of the cell's sphere lies
+/// beyond that facet.
 std::array<bool, 4> attachments(const WeightedCorners& corners) {
     const RelativeTo<double> relative(corners[0], 0);
     const Lifted<double> u = relative(corners[1]), v = relative(corners[2]), w = relative(corners[3]);
@@ -297,9 +299,10 @@ std::array<bool, 4> attachments(const WeightedCorners& corners) {
     // Barycentric coordinates of the centre, times 2 volume².
     const std::array<double, 4> coordinates{2 * volume * volume - dot(centre, sum), dot(centre, vw), dot(centre, wu),
                                             dot(centre, uv)};
-    // With U, V, W short for the offsets' largest components and L for three times their squares plus the difference of
-    // the weights, the monomials sum to at most 20 (L_u VW + L_v WU + L_w UV) (VW + WU + UV) in absolute value, and
-    // pass at most 23 roundings each, the offsets' included. 20 · 23 · 2^-53 < 5.2e-14.
+    // Let U, V, W be the largest components of the offsets. L_u, L_v, L_w are three times the squares of these plus the
+    // absolute difference of the weights. The absolute values of the monomials sum to at most 20 (L_u VW + L_v WU + L_w
+    // UV) (VW + WU + UV). Each monomial has at most 23 roundings, including those of the offsets. 20 · 23 · 2^-53 <
+    // 5.2e-14.
     const double su = largest(u.offset), sv = largest(v.offset), sw = largest(w.offset);
     const auto most = [&](double size, const WeightedPoint& corner) {
         return 3 * size * size + std::abs(corners[0].weight - corner.weight);
@@ -316,7 +319,7 @@ std::array<bool, 4> attachments(const WeightedCorners& corners) {
 
 struct Bounds {
     double low, high;
-    /// Narrow enough for a value. False when a bound is infinite or NaN.
+    /// Whether the bounds are close enough together to give a value. False if a bound is infinite or NaN.
     bool narrow() const { return low > 0 && high - low <= 1e-9 * low; }
     double middle() const { return low + (high - low) / 2; }
 };
@@ -375,7 +378,7 @@ CellSpheres cell_spheres(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3
 }
 
 CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, double largest, unsigned facets) {
-    // Sorted by coordinates, so that the result does not depend on the corners' numbers.
+    // The corners are sorted by coordinates, so that the result does not depend on their numbers.
     std::array<int, 4> by_position{0, 1, 2, 3};
     std::ranges::sort(by_position, is_lower, [&](int i) -> const Vec3& { return *given[i].position; });
     const WeightedCorners corners{given[by_position[0]], given[by_position[1]], given[by_position[2]],

@@ -12,7 +12,7 @@ namespace scanmill::alpha {
 
 namespace {
 
-/// Visits every cell connected to `seed` through cells that `enter(cell)` accepts; it must accept each once.
+/// Visits every cell connected to `seed` through cells that `enter(cell)` accepts. `enter` must accept each cell once.
 template <class Enter, class Visit>
 void walk(const TetMesh& tets, std::vector<u32>& stack, u32 seed, const Enter& enter, const Visit& visit) {
     stack.assign(1, seed);

@@ -14,26 +14,25 @@ namespace scanmill::alpha {
 enum Label : u8 {
     outside = 0,
     solid = 1,
-    left_out = 2  ///< in the alpha-solid, but in a component of it that is not kept
+    left_out = 2  ///< in the alpha-solid, but in a component that is not kept
 };
 
-/// Keeps the component of solid cells (joined across facets) that has the most points; ties: the one
-/// with the lowest point (by x, then y, then z; then the one whose highest point is lower). Labels the others
-/// `left_out`.
+/// Keeps the face-connected component of solid cells with the most points, and labels the other components `left_out`.
+/// Ties: the component with the lower lowest point (by x, then y, then z), then the one with the lower highest point.
 void keep_largest_component(const TetMesh& tets, std::span<u8> labels);
 
-/// Makes enclosed cells solid: cells that are not solid and that no path through such cells joins to the outside of the
-/// hull.
+/// Makes enclosed cells solid. An enclosed cell is not solid, and no path through cells that are not solid connects it
+/// to the outside of the hull.
 void fill_cavities(const TetMesh& tets, std::span<u8> labels);
 
-/// Per vertex 1 when it has a solid cell, else 0.
+/// Per vertex: 1 if one of its cells is solid, else 0.
 Array<u8> coverage(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
 std::size_t covered_points(const TetMesh& tets, std::span<const u8> labels);
 
 /// The number of points in each component of an alpha-solid to which cells are added.
 ///
-/// Components are joined across facets; they may share points where they touch. When two are joined, the cells of the
-/// smaller one are visited once, so the visits per cell are at most the doublings of its component.
+/// Components are joined across facets. Components that merely touch may share points. When two components are joined,
+/// the cells of the smaller one are visited once. Therefore each cell is visited at most O(log n) times.
 class IncrementalComponents {
 public:
     /// Cells that are not `outside` are in the alpha-solid. Cost: about 40 bytes per cell.
@@ -42,7 +41,7 @@ public:
     /// Pre: the cells were outside.
     void add(std::span<const u32> cells);
 
-    /// Points of a component that has the most, and the number of components that have as many.
+    /// The largest number of points in a component, and the number of components with as many points.
     std::size_t most_points() const { return most_points_; }
     std::size_t components_with_most() const { return components_with_[most_points_]; }
 
@@ -55,12 +54,12 @@ private:
     const TetMesh& tets_;
     DisjointSets components_;
     Array<u8> is_in_;
-    /// The cells of a component form a ring.
+    /// The next cell of the component; its cells form a ring.
     Array<u32> next_;
-    /// At the root of a component.
+    /// Set at the root of each component.
     Array<u32> cell_count_, point_count_;
     Lists<> cells_at_;
-    /// Per number of points, the components that have as many.
+    /// By number of points: the number of components with that many points.
     Array<u32> components_with_;
     std::size_t most_points_ = 0;
     /// Per vertex, the last pass of common_points() that visited it.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A priority queue for values that never rise: no value pushed exceeds the last one popped. A radix heap (Ahuja,
-/// Mehlhorn, Orlin, Tarjan 1990) over the bits of non-negative doubles: amortised a few sequential moves per item,
-/// where a binary heap misses the cache at every level.
+/// A priority queue for values that never rise: no pushed value exceeds the last popped one. It is a radix heap (Ahuja,
+/// Mehlhorn, Orlin, Tarjan 1990) over the bits of non-negative doubles. An item takes a few sequential moves on
+/// average, whereas a binary heap misses the cache at every level.
 
 #include <array>
 #include <bit>
@@ -25,9 +25,9 @@ public:
     /// The value of the last item popped; infinite at first.
     double level() const { return std::bit_cast<double>(~level_); }
 
-    /// Pops into `item` the next item that `wanted(item)` accepts; items of equal value come last in, first out.
-    /// `wanted` is called for an item when its value becomes the level, once per push. `soon(item)` is called for some
-    /// items shortly before they are popped, to prefetch their data. False when no item is left.
+    /// Pops the next item that `wanted(item)` accepts into `item`. Returns false if no item is left. Items of equal
+    /// value are popped last in, first out. `wanted` is called once per push, when the item's value is the level.
+    /// `soon(item)` is called for some items shortly before they are popped, to prefetch their data.
     template <class Wanted, class Soon>
     bool pop(u32& item, const Wanted& wanted, const Soon& soon) {
         Array<Entry>& current = buckets_[0];
@@ -54,7 +54,8 @@ private:
 
     // Non-negative doubles compare like their bits; the complement makes the largest value the smallest key.
     static u64 key_of(double value) { return ~std::bit_cast<u64>(value + 0.0); }
-    /// 0 for the level itself, else the position of the highest bit in which the key differs from it.
+    /// 0 for the level itself. Otherwise the position, from 1, of the highest bit in which the key differs from the
+    /// level.
     std::size_t bucket(u64 key) const { return static_cast<std::size_t>(std::bit_width(key ^ level_)); }
 
     /// Lowers the level to the largest value left and redistributes its bucket.

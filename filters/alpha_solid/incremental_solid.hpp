@@ -2,8 +2,8 @@
 #pragma once
 /// A solid to which cells are added, with a test of whether its boundary is a 2-manifold.
 ///
-/// A new cell changes the boundary only at its four vertices, so only those need a new test. Tests are lazy: one
-/// non-manifold vertex is enough to reject a solid, and as long as it stays non-manifold no other is tested.
+/// A new cell changes the boundary only at its four vertices, so only those need a new test. Tests are lazy, because
+/// one non-manifold vertex is enough to reject a solid. As long as it stays non-manifold, no other vertex is tested.
 
 #include <span>
 
@@ -14,13 +14,14 @@ namespace scanmill::alpha {
 
 class IncrementalSolid {
 public:
-    /// `suspects` are the vertices whose triangles may not be exactly one closed fan; all others are known to be.
+    /// `suspects` are the vertices whose boundary triangles may not form exactly one closed fan. Pre: those of all
+    /// other vertices do.
     IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects);
 
-    /// Makes cells solid, and with each one every left-out cell that it joins to the solid across facets.
+    /// Makes the cells solid, and every left-out cell that they join to the solid across facets.
     void add(std::span<const u32> cells);
-    /// Makes those of the cells solid that are joined to the solid across facets, perhaps through each other or through
-    /// left-out cells; the others become left out.
+    /// Makes a cell solid if it is joined to the solid across facets, perhaps through others of these cells or through
+    /// left-out cells. The other cells become left out.
     void add_joined(std::span<const u32> cells);
 
     enum class Verdict {
@@ -29,14 +30,15 @@ public:
         many_suspects  ///< so many vertices are suspect that testing the whole boundary is cheaper: see suspect_only()
     };
     Verdict verdict();
-    /// Replaces the suspects, as in the constructor.
+    /// Replaces the suspects; see the constructor.
     void suspect_only(std::span<const u32> vertices);
-    /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at
-    /// once; repeats until no vertex is non-manifold. `price` is per cell. Each pass makes a cell solid, so it ends.
+    /// Adds cells until no vertex is non-manifold. In each pass, it adds around every non-manifold vertex the cells
+    /// with the smallest `price` among those that are not solid. `price` is per cell. Each pass makes a cell solid, so
+    /// the repair ends.
     void repair(std::span<const double> price);
 
     const Array<u8>& labels() const { return labels_; }
-    /// Vertices of solid cells.
+    /// Number of vertices of solid cells.
     std::size_t covered() const { return covered_count_; }
 
 private:
@@ -45,8 +47,8 @@ private:
 
     const TetMesh& tets_;
     Array<u8> labels_;
-    /// From `next_suspect_` on, oldest first: what was non-manifold from the start is likely to stay so for long. The
-    /// first one is non-manifold unless its star has changed since its test.
+    /// From `next_suspect_` on, oldest first, because a vertex that was non-manifold from the start is likely to stay
+    /// so for long. The suspect at `next_suspect_` is non-manifold unless its star has changed since its test.
     std::vector<u32> suspects_;
     std::size_t next_suspect_ = 0;
     bool next_changed_ = true;

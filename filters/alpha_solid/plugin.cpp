@@ -12,24 +12,26 @@ SCANMILL_FILTER() {
             "outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .ties(
-            "Facets whose alpha is equal in double precision open together; of components with equally many points the "
-            "one with the lowest point is kept.")
+            "Facets with equal alpha in double precision become walls together. Among components with equally many "
+            "points, the one with the lowest point is kept.")
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, labelled inside or outside.")
-        .param("alpha", &P::alpha, "The radius of the ball; auto takes the least that gives a valid solid.",
+        .param("alpha", &P::alpha, "Radius of the ball; `auto` is the smallest radius that gives a valid solid.",
                word("auto"), above(0))
-        .choice("search", &P::search,
-                {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
-                 {"binary", AlphaSearch::binary, "The paper's bisection: a valid solid, not always the least."}},
-                "How alpha: auto is found.")
-        .choice("components", &P::components,
-                {{"single", AlphaComponents::single,
-                  "One solid: alpha grows until all are joined; with coverage below 100 % only the one with the most "
-                  "points is kept."},
-                 {"many", AlphaComponents::many,
-                  "Any number of solids: those that are separate at the least alpha stay separate."}},
-                "How many separate solids are valid.")
+        .choice(
+            "search", &P::search,
+            {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
+             {"binary", AlphaSearch::binary, "The paper's bisection; it finds a valid solid, not always the least."}},
+            "How alpha is found for `alpha: auto`.")
+        .choice(
+            "components", &P::components,
+            {{"single", AlphaComponents::single,
+              "One solid. Alpha grows until all solids are joined; with coverage below 100 %, only the solid with the "
+              "most points is kept."},
+             {"many", AlphaComponents::many,
+              "Any number of solids. Solids that are separate at the least alpha stay separate."}},
+            "Number of separate solids that a valid result may have.")
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
         .metric("alpha", Unit::length, "The radius used.", headline)
         .metric("alpha-cover", Unit::length, "The least radius that covers the requested share of the points.")

@@ -20,12 +20,12 @@ AlphaChoice choice_of(AlphaSearch search) {
     return search == AlphaSearch::binary ? AlphaChoice::binary : AlphaChoice::scan;
 }
 
-/// Distance of `alpha` to the nearest radius in the range; its end counts if it is below, though not in the range.
+/// Distance from `alpha` to the range. The end of the range counts as a part of it.
 double distance(const AlphaRange& range, double alpha) {
     return std::max(std::sqrt(range.from) - alpha, alpha - std::sqrt(range.to));
 }
 
-/// Between two squares that differ in their last bits there may be no radius.
+/// Whether the range contains the square of a double. There may be none between squares that differ in their last bits.
 bool has_a_radius(const AlphaRange& range) {
     const double root = std::sqrt(range.from);
     const double least = root * root < range.from ? std::nextafter(root, range.to) : root;
@@ -55,8 +55,8 @@ std::string text_within(const AlphaInterval& interval, double alpha) {
     return text;
 }
 
-/// The alpha-solid while alpha grows: cells enter in groups of equal value, and after each group it is known which
-/// points the solid has and whether it is valid.
+/// The alpha-solid while alpha grows. Cells enter in groups of equal value. After each group, is_valid() tests the
+/// solid.
 class Selector::Ascent {
 public:
     Ascent(const Selector& selector, const Selection& start)
@@ -86,14 +86,15 @@ public:
             return;
         }
         solid_->add(cells);
-        // Every point is covered, so components are only joined.
+        // All points are covered, so new cells can only join components.
         if (component_count_ > 1)
             for (u32 cell : cells)
                 for (u32 vertex : selector_.tets_.cells[cell])
                     component_count_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
     }
 
-    /// One component when one is requested with all points; else a component with enough points, which is then kept.
+    /// With full coverage: whether the components are as requested. With less: whether a component has enough points;
+    /// the largest component is then kept.
     bool has_required_component() {
         if (!components_) return component_count_ == 1;
         if (components_->most_points() < selector_.needed_) return false;
@@ -133,8 +134,8 @@ public:
     }
 
 private:
-    /// Another component than the kept one may have the most points by now, or as many. Components only gain points, so
-    /// the choice stays valid as long as neither number changes.
+    /// Keeps the largest component if another than the kept one may have as many points by now, or more. Components
+    /// only gain points, so the choice stays valid as long as neither of the noted numbers changes.
     void follow_largest() {
         const bool is_noted = most_ == components_->most_points() && with_most_ == components_->components_with_most();
         const bool is_alone =
@@ -153,13 +154,14 @@ private:
     const Selector& selector_;
     std::optional<IncrementalSolid> solid_;
     std::size_t outside_;
-    /// When one component is requested: its points joined, and the number of components left.
+    /// If one component is requested: the joined points, and the number of components left.
     DisjointSets vertices_;
     std::size_t component_count_ = 1;
-    /// When the largest component is kept: the points of each, and the numbers when the largest was last chosen.
+    /// If the largest component is kept: the components, and their largest number of points and the number of
+    /// components that have it, as of the last choice.
     std::optional<IncrementalComponents> components_;
     std::size_t most_ = 0, with_most_ = 0;
-    /// The boundary, when the last test needed all of it.
+    /// The boundary, if the last test needed all of it.
     std::optional<Array<Triangle>> triangles_;
 };
 
@@ -219,9 +221,9 @@ Selector Selector::for_all_points() const {
     return all;
 }
 
-/// The least valid solid for a share is valid for every smaller share too, and so is the least solid of one component,
-/// joined across facets, where repairs start. So alpha never falls when the share grows. Only repairs for all points
-/// start at a smaller alpha, from components that touch.
+/// The smallest valid solid for a share is also valid for every smaller share. So is the smallest solid of one
+/// component that is joined across facets, where repairs start. Therefore alpha never falls when the share grows. Only
+/// repairs for all points start at a smaller alpha, from components that touch.
 Selection Selector::scan() const {
     Selection chosen = scan_for_share();
     if (!keeps_largest_ || sweep_.values[chosen.outside] <= sweep_.cover_all) return chosen;
@@ -271,7 +273,7 @@ std::optional<Selection> Selector::separate() const {
     assert(one_component_);
     Selector any = *this;
     any.one_component_ = false;
-    // All points are covered there, so a larger alpha only joins components.
+    // At alpha_cover all points are covered, so a larger alpha only joins components.
     if (any.solid_without(sweep_.outside_above(cover_)).components < 2) return std::nullopt;
     Selection selection = any.scan_for_share();
     if (selection.components < 2) return std::nullopt;

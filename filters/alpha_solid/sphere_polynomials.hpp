@@ -8,7 +8,8 @@
 /// circumcentre of a triangle    = (|v|² n×u + |u|² v×n) / 2|n|².
 ///
 /// With weights, the centre's offset x from corner a satisfies 2 x·u = |u|² + w_a - w_b for every other corner b at
-/// offset u. So the formulas are the same with these right-hand sides, here called lifts, in place of |u|².
+/// offset u. The right-hand sides are called lifts here. The formulas also hold with these lifts in place of |u|², |v|²
+/// and |w|².
 
 #include <algorithm>
 #include <array>
@@ -65,8 +66,8 @@ Offset<Number> circumcentre_numerator(const Number& uu, const Number& vv, const 
     return sum;
 }
 
-/// |n|² times the power of offset w with regard to the smallest sphere through 0, u and v: negative inside.
-/// |n|² |w|² − w·(|v|² n×u + |u|² v×n).
+/// |n|² times the power of offset w with regard to the smallest sphere through 0, u and v; negative inside the sphere.
+/// It is |n|² |w|² − w·(|v|² n×u + |u|² v×n).
 template <class Number>
 Number smallest_sphere_power(const Offsets<Number, 3>& offsets) {
     const auto& [u, v, w] = offsets;
@@ -78,22 +79,22 @@ Number smallest_sphere_power(const Offsets<Number, 3>& offsets) {
     return dot(n, n) * dot(w, w) - dot(w, twice_centre);
 }
 
-/// numerator / denominator; both of them non-negative, the denominator above 0.
+/// numerator / denominator. The numerator is not negative, and the denominator is above 0.
 template <class Number>
 struct Fraction {
     Number numerator, denominator;
 };
 
-/// A weighted corner relative to another one.
+/// A weighted corner relative to another one; lifts are defined at the top.
 template <class Number>
 struct Lifted {
     Offset<Number> offset;
     Number lift;
 };
 
-/// Twice the centre of the smallest sphere of a, b and c is n × spread / |n|², with n = u×v and
-/// spread = lift(c) u - lift(b) v. So its squared radius is |spread|² / 4|n|² plus `deficit`, the amount by which a's
-/// weight is below the largest.
+/// The smallest sphere orthogonal to a, b and c. Twice the offset of its centre from a is n × spread / |n|², with n =
+/// u×v and spread = lift(c) u - lift(b) v. Its squared radius is |spread|² / 4|n|² plus `deficit`, the amount by which
+/// a's weight is below the largest.
 template <class Number>
 struct FacetSphere {
     FacetSphere(const Lifted<Number>& b, const Lifted<Number>& c)
@@ -105,7 +106,7 @@ struct FacetSphere {
         const Number denominator = Number(4) * normal_squared;
         return {dot(spread, spread) + deficit * denominator, denominator};
     }
-    /// |n|² times the power of d.
+    /// |n|² times the power of d with regard to this sphere.
     Number power(const Lifted<Number>& d) const {
         return normal_squared * d.lift - dot(d.offset, cross(normal, spread));
     }

@@ -22,13 +22,13 @@ std::size_t SweepResult::group_begin(std::size_t index) const {
 
 namespace {
 
-/// `spheres(cell, facets)` gives a cell's CellSpheres; facets outside the mask need the cell's contribution alone.
+/// `spheres(cell, facets)` returns a cell's CellSpheres. For facets outside the mask, the cell's contribution suffices.
 template <class Spheres>
 Array<SweepCell> sweep_cells_with(const TetMesh& tets, const Spheres& spheres, Context& context) {
     constexpr std::size_t chunk = 1 << 13;
     const std::size_t count = tets.cells.size();
     Array<SweepCell> cells(count);
-    // Where one of its two cells attaches a facet, that cell's contribution is the larger.
+    // If one of its two cells attaches a facet, that cell's contribution is the larger one.
     const auto join = [&](std::size_t c, int corner, u32 across) {
         SweepCell& other = cells[across];
         const auto back = std::ranges::find(other.neighbours, static_cast<u32>(c)) - other.neighbours.begin();
@@ -51,7 +51,7 @@ Array<SweepCell> sweep_cells_with(const TetMesh& tets, const Spheres& spheres, C
         }
     });
     if (is_serial) return cells;
-    // Facets between cells of different chunks, now that both are computed.
+    // Joins facets between cells of different chunks, now that both cells are computed.
     for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
         for (std::size_t c = begin; c < end; ++c)
@@ -106,7 +106,7 @@ public:
             }
         }
         count_covered(result);
-        // Removes cells swept between reaching alpha_cover and the next count.
+        // Removes the cells that were swept between reaching alpha_cover and the next count.
         while (is_enough(result, result.values.back(), limits)) {
             result.values.pop_back();
             result.cells.pop_back();
@@ -115,7 +115,7 @@ public:
     }
 
 private:
-    /// Whether cells that enter at `level` are not needed.
+    /// Whether the sweep can end before the cells that enter at `level`.
     bool is_enough(const SweepResult& result, double level, const SweepLimits& limits) const {
         return covered_ < result.needed && level < limits.value && level < result.cover;
     }
@@ -132,7 +132,7 @@ private:
         }
     }
 
-    /// To be called when a point has lost its last cell.
+    /// Must be called when a point has lost its last cell.
     void uncover_one(SweepResult& result) {
         if (covered_ == result.points) result.cover_all = result.values[counted_];
         if (covered_-- == result.needed) result.cover = result.values[counted_];
@@ -142,9 +142,9 @@ private:
 
     std::span<const SweepCell> cells_;
     Array<u8> seen_;
-    /// Per point: cells round it that are not subtracted yet.
+    /// Per point: the number of its cells that are not subtracted yet.
     Array<u32> cells_left_;
-    /// Points that still have cells, after the first `counted_` cells of the result were subtracted.
+    /// Number of points that still have cells after the first `counted_` cells of the result were subtracted.
     std::size_t covered_ = 0, counted_ = 0;
     DescendingQueue queue_;
 };
@@ -158,9 +158,9 @@ Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context) {
     };
     if (tets.weights.empty()) return sweep_cells_with(tets, unweighted, context);
     if (tets.weights.size() != tets.positions.size())
-        throw Error("needs a weight for each of {} vertices or none; there are {}", tets.positions.size(),
+        throw Error("needs a weight for each of {} vertices, or no weights; there are {}", tets.positions.size(),
                     tets.weights.size())
-            .hint("'delaunay: {weights: …}' gives each a weight");
+            .hint("'delaunay: {weights: …}' gives every vertex a weight");
     const auto [least, largest] = std::ranges::minmax(tets.weights);
     if (!(least < largest)) return sweep_cells_with(tets, unweighted, context);
     const auto weighted = [&tets, largest = largest](const Tetrahedron& cell, unsigned facets) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The order in which cells leave the solid as alpha shrinks: one sweep that serves every alpha.
+/// Finds the order in which cells leave the solid as alpha shrinks; one sweep serves every alpha.
 ///
 /// out(c) is the largest value such that a path from outside the hull to cell c crosses only facets of at least that
 /// value (a widest path). The value of a facet is the squared alpha at which it becomes a wall. A cell is outside at
-/// alpha exactly when out(c) > alpha². The sweep is Prim's algorithm from outside: cells come in order of descending
-/// out, so it may stop as soon as the rest is known to be solid, and never visits the facets between solid cells.
+/// alpha exactly when out(c) > alpha².
+///
+/// The sweep is Prim's algorithm from outside: cells come in order of descending out. Therefore it can stop as soon as
+/// the rest is known to be solid, and it never visits the facets between solid cells.
 
 #include <limits>
 #include <span>
@@ -17,46 +19,46 @@ namespace scanmill::alpha {
 
 /// The data of a cell that the sweep over the cells needs, in one cache line.
 struct alignas(64) SweepCell {
-    /// values[i] is that of the facet opposite to corner i; both cells of a facet have the same.
+    /// values[i] is the value of the facet opposite to corner i. Both cells of a facet store the same value.
     std::array<double, 4> values;
     Tetrahedron corners;
     std::array<u32, 4> neighbours;
 };
 
-/// The cells with the values of their facets (see cell_spheres.hpp): of the contributions of the two cells of a facet
-/// the larger. Uses weights when they differ. Throws Error when there are weights, but not one per vertex. Cost: two
-/// parallel passes over the cells.
+/// The cells with the values of their facets. The value of a facet is the larger of its two cells' contributions (see
+/// cell_spheres.hpp). Weights count unless all are equal. Throws Error if there are weights, but not one per vertex.
+/// Cost: two parallel passes over the cells.
 Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context);
 
 struct SweepResult {
-    /// Cells by descending out, and their out. Contains all cells with out ≥ the last value.
+    /// Cells in order of descending out, and their out. All cells whose out is at least the last value are contained.
     Array<u32> cells;
     Array<double> values;
     /// alpha_cover²: the least value at which at least `needed` points are in or on the solid.
     double cover = 0;
-    /// The same for all points; not below `cover`.
+    /// The least value at which all points are in or on the solid; not below `cover`.
     double cover_all = 0;
-    /// Points that have a cell, and the requested share of them, rounded up.
+    /// Number of points that have a cell, and the requested share of that number, rounded up.
     std::size_t points = 0, needed = 0;
 
     /// Number of cells with out > value.
     std::size_t outside_above(double value) const;
-    /// The first of the cells that share the out of cells[index].
+    /// Index of the first cell that has the same out as cells[index].
     std::size_t group_begin(std::size_t index) const;
 };
 
 struct SweepLimits {
-    /// The sweep continues until it has passed below this value …
+    /// The sweep continues at least until it is below this value.
     double value = std::numeric_limits<double>::infinity();
-    /// … and below alpha_cover² for this share of the points, in (0, 1].
+    /// The sweep continues at least until it is below alpha_cover² for this share of the points, in (0, 1].
     double coverage = 1;
 };
 
-/// The number of points in a share of them, rounded up; at least 1. Pre: coverage in (0, 1].
+/// The number of points in the share `coverage` of `points`, rounded up; at least 1. Pre: coverage in (0, 1].
 std::size_t needed_points(double coverage, std::size_t points);
 
-/// Every group of equal values is complete. Pre: corners are below `points`. Cost: O(m log m) time in theory for m
-/// cells swept, nearly linear in practice; 12 bytes per cell swept and 1 per cell.
+/// Sweeps the cells. Every group of equal values in the result is complete. Pre: corners are below `points`. Cost: O(m
+/// log m) time in theory for m swept cells, nearly linear in practice; 12 bytes per swept cell, and 1 per cell.
 SweepResult sweep_from_outside(std::span<const SweepCell> cells, std::size_t points, const SweepLimits& limits,
                                Context& context);
 

@@ -36,7 +36,7 @@ TEST(AlphaSolid, RegularTetrahedron_AppearsAtItsFacetsCircumradius) {
     expect_closed(result, 4, 2);
     EXPECT_EQ(
         refusal(tets, at_alpha(0.57)),
-        "alpha 0.57 u leaves no cell inside; the first is inside from 0.5774 u, and from 0.5774 u cells cover 4 of 4 "
+        "alpha 0.57 u leaves no cell inside; the first cell enters at 0.5774 u, and from 0.5774 u cells cover 4 of 4 "
         "points\nhint: 'alpha: auto' finds the least alpha with a closed manifold boundary");
 }
 
@@ -159,7 +159,7 @@ TEST(AlphaSolid, OppositeNeedles_AreClosedRoundTheirCommonTip) {
     EXPECT_EQ(result.choice, AlphaChoice::repaired);
     EXPECT_EQ(result.alpha, result.alpha_cover);
     EXPECT_NEAR(result.alpha, 0.5, 0.01);
-    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("was closed round its non-manifold vertices")));
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("was closed around its non-manifold vertices")));
     expect_closed(result, 7, 2);
     // The two needles were all that alpha gave; the repair has added to them without filling the hull.
     const AlphaSolidResult before = solid_of(tets, at_alpha(result.alpha));

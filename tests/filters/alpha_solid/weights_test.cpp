@@ -105,7 +105,7 @@ TEST(AlphaSolidWeights, EveryPoint_IsCountedOnce) {
 TEST(AlphaSolidWeights, WeightsForSomePointsOnly_AreRefused) {
     TetMesh tets = weighted(random_cube(20, 1)).tets;
     tets.weights = {1, 2, 3};
-    EXPECT_THAT(refusal(tets, {}), HasSubstr("needs a weight for each of 20 vertices or none; there are 3"));
+    EXPECT_THAT(refusal(tets, {}), HasSubstr("needs a weight for each of 20 vertices, or no weights; there are 3"));
 }
 
 TEST(AlphaSolidWeights, NegativeAndNotFiniteWeights_AreRefusedWithTheirRange) {
