@@ -12,12 +12,12 @@ namespace scanmill {
 namespace {
 
 void require_rigid(const RigidTransform& transform) {
-    constexpr double most = 1e-6;  // as for the matrices of files
+    constexpr double most = 1e-6;  // equals the limit for matrices in files
     const Eigen::Matrix3d& rotation = transform.rotation;
     const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(off <= most) || !(rotation.determinant() > 0))
         throw Error(
-            "the transform is not a rigid motion: the product of its matrix with its transpose is {:.3g} off "
+            "the transform is not a rigid motion: its matrix times the transposed matrix differs by {:.3g} from "
             "the identity, and its determinant is {:.6g}; 0 and 1 are needed",
             off, rotation.determinant())
             .hint("`align` finds a rigid motion between points");
@@ -31,8 +31,8 @@ void require_frame(const Frame& frame, const RigidTransform& transform) {
     const std::string& name = frame.name;
     if (name.empty()) return;
     if (name == transform.to && name != transform.from)
-        throw Error("the value is already in the frame '{}', to which the transform leads", name)
-            .hint("wire the value as it was before; a transform is applied once");
+        throw Error("the value is already in the frame '{}', the target frame of the transform", name)
+            .hint("wire the value as it was before this transform; a transform is applied once");
     if (!transform.from.empty() && name != transform.from)
         throw Error("the value is in the frame '{}'; the transform starts from '{}'", name, transform.from)
             .hint("wire a value in that frame, or declare its frame at the workflow's input");
@@ -54,7 +54,7 @@ Value apply_transform(const Value& value, const RigidTransform& transform, Conte
     if (transform.to.empty() && !frame->name.empty()) {
         context.warn(
             fmt::format("the transform does not name its target frame; the value is no longer in "
-                        "'{}' and has no frame's name",
+                        "'{}', and its frame has no name",
                         frame->name));
         Frame unnamed = *frame_of(moved);
         unnamed.name.clear();

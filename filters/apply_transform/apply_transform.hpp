@@ -8,15 +8,19 @@
 
 namespace scanmill {
 
-/// The value in the frame `transform.to`, moved as placed() moves it (scanmill/kinds/value.hpp): positions are rotated
-/// and the frame's origin is translated, so that large coordinates keep their digits; directions, and the columns
-/// `normal`, `approach` and `corner-normals`, are rotated. Rows keep their order, nothing else changes.
+/// Moves the value into the frame `transform.to` by placed() (scanmill/kinds/value.hpp). Positions are rotated, and the
+/// frame's origin is translated, so that large coordinates keep their digits. Directions and the columns `normal`,
+/// `approach` and `corner-normals` are rotated. Rows keep their order, and nothing else changes.
 ///
-/// Throws Error for a value that is in another frame than `transform.from`, and for one that is already in
-/// `transform.to`, if both names are known; so a transform between two named frames cannot be applied twice. Throws
-/// Error also for a transform with a unit and a value without, for a rotation or translation that is not a rigid
-/// motion, and for kinds without positions. Warns if the transform has no unit but the value has, and if the frame that
-/// it leads to has no name. Cost: O(n).
+/// Throws Error in these cases:
+/// - The value is in another frame than `transform.from`, or already in `transform.to`, if the names are known.
+///   Therefore a transform between two named frames cannot be applied twice.
+/// - The transform has a unit and the value has none.
+/// - The rotation or the translation is not a rigid motion.
+/// - The value has no positions.
+///
+/// Warns if the value has a unit and the transform has none. Warns if the value's frame has a name and `transform.to`
+/// is empty. Cost: O(n).
 Value apply_transform(const Value& value, const RigidTransform& transform, Context& context);
 
 }  // namespace scanmill

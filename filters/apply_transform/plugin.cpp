@@ -17,7 +17,7 @@ struct ValueOf {
         return value;
     }
     static Declare<ApplyTransformParams>& declare(Declare<ApplyTransformParams>& filter) {
-        return filter.in<Kinds...>("value", "What is moved; its rows, columns and other numbers stay as they are.");
+        return filter.in<Kinds...>("value", "The value that is moved; only positions and directions change.");
     }
 };
 /// Every kind with positions.
@@ -27,12 +27,12 @@ Declare<ApplyTransformParams> declaration() {
     Declare<ApplyTransformParams> filter("apply-transform", 1);
     filter.summary("Moves points, a mesh or anything else with positions into another frame.")
         .source("Wang 2006, chapter 5")
-        .ties("None: every position is moved alone.")
-        .not_finite("Carried along, NaN as NaN.")
-        .in<RigidTransform>("transform", "The motion, from the frame of the value to another.")
+        .ties("None: every position is moved independently.")
+        .not_finite("They are carried along; NaN stays NaN.")
+        .in<RigidTransform>("transform", "The motion from the frame of the value to another frame.")
         .made_by("align");
     return Geometry::declare(filter)
-        .out_like("value", "value", "The value in the frame that the transform leads to.")
+        .out_like("value", "value", "The value in the target frame of the transform.")
         .run([](const Inputs& inputs, const ApplyTransformParams&, Context& context) {
             return Outputs().set(
                 "value", apply_transform(Geometry::at(inputs), inputs.get<RigidTransform>("transform"), context));

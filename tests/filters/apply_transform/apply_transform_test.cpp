@@ -153,7 +153,7 @@ TEST(ApplyTransform, WhatAlignFound_CarriesTheSourceOntoTheTarget) {
 TEST(ApplyTransform, Twice_IsRefused) {
     const Value once = applied(in_frame(cloud(plate()), "scanner"), to_machine());
     EXPECT_EQ(refusal(once, to_machine()).sentence(),
-              "the value is already in the frame 'machine', to which the transform leads");
+              "the value is already in the frame 'machine', the target frame of the transform");
     // Also where the transform does not name the frame that it starts from.
     RigidTransform from_anywhere = to_machine();
     from_anywhere.from.clear();
