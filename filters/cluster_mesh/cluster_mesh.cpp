@@ -40,14 +40,15 @@ using growing::Neighbourhoods;
 
 double sine(double degrees) { return elementary::turn_of(Angle::degrees(degrees).in_radians()).sine; }
 double cosine(double degrees) { return elementary::turn_of(Angle::degrees(degrees).in_radians()).cosine; }
-/// More points than these within max_edge of a point are refused: max_edge is far too large.
+/// max_edge is far too large if more other points than this are within max_edge of a point.
 constexpr std::size_t most_near = 1000;
 
-/// The limits of the insertion, then relaxed ones, as region-grow relaxes its own: longest edge, least angle, dihedral
-/// deviation, and the angles to the normals of points on faces and at edges. The limits to the points' own normals keep
-/// sheets apart and boundaries open. So do the short edges of the insertion: the next sheet is farther away than the
-/// next point of the same one. The tested shares are 0.5, 0.6, 2/3, 0.7, 0.75, 0.85 and 1. Only 2/3 joins sheets 1.5
-/// spacings apart at their borders alone; on 26 thinned models it leaves as many loops as 1, and fewer unused points.
+/// The limits of the insertion, then the relaxed limits of the completion. They limit the longest edge, the smallest
+/// angle, the dihedral deviation, and the angles to the normals of points on faces and at edges. The angles to the
+/// points' normals keep sheets apart and boundaries open. So do the short edges of the insertion, because the next
+/// sheet is farther away than the next point of the same sheet. The tested shares of max_edge are 0.5, 0.6, 2/3, 0.7,
+/// 0.75, 0.85 and 1. Only with 2/3, sheets 1.5 spacings apart are joined at their borders alone. On 26 thinned models
+/// 2/3 leaves as many loops as 1, and fewer unused points.
 const std::array<Limits, 5> passes{{{2.0 / 3, sine(5), 0, cosine(60), cosine(85), true, true, false},
                                     {1, sine(5), 0, cosine(60), cosine(85), true, true, false},
                                     {1, sine(3), cosine(105), cosine(75), cosine(110), true, true, true},
@@ -57,7 +58,7 @@ const std::array<Limits, 5> passes{{{2.0 / 3, sine(5), 0, cosine(60), cosine(85)
 /// Inserts all points, and completes the mesh.
 class Insertion {
 public:
-    /// `is_given`: max_edge is not derived.
+    /// `is_given`: whether max_edge is a parameter of the user.
     Insertion(Surface& surface, double max_edge, bool is_given, const Vec3& up, const WinnerLimits& winner,
               Context& context)
         : surface_(surface),
@@ -100,7 +101,7 @@ private:
     void insert(u32 point) {
         const auto around = near(point);
         if (around.size() > most_near)
-            throw Error("max-edge {:.3g} u is too large: {} other points are nearer than that to the point at {}",
+            throw Error("max-edge {:.3g} u is too large: {} other points are within this distance of the point at {}",
                         max_edge_, around.size(), at(surface_.positions[point]))
                 .hint(fmt::format("{}use about {:.3g} u", is_given_ ? "leave max-edge at `auto`, or " : "",
                                   2.5 * std::sqrt(surface_.neighbourhoods.squared_reach(point)) / 2));
@@ -110,7 +111,7 @@ private:
         const int found = clusters_.meet(point, inserted_near_);
         ++cases_[static_cast<std::size_t>(found - 1)];
         if (!try_point(point, around, passes[0], false)) return;
-        // Points that waited may follow now.
+        // Waiting points near the new triangles are tried again.
         waiting_.assign(1, point);
         while (!waiting_.empty()) {
             const u32 joined = waiting_.front();
@@ -191,7 +192,8 @@ void require_in_range(const ClusterMeshParams& params) {
     require_angle("overlap-angle", params.overlap_angle, 90, false);
 }
 
-/// The median distance of a point to its `rank`-th nearest other point, from 0, or to the last one that is known.
+/// The median distance between a point and its neighbour number `rank`, counted from 0 for the nearest one. A point
+/// with fewer known neighbours uses the last one.
 double median_distance(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, std::size_t rank) {
     std::vector<double> squares(points.size());
     for (u32 point = 0; point < points.size(); ++point) {
@@ -202,13 +204,13 @@ double median_distance(const DistinctPoints& points, const Neighbourhoods& neigh
     return std::sqrt(median(squares));
 }
 
-/// The max_edge for hints: 2.5 spacings, without those of near-duplicates. On a square grid the eighth nearest point is
-/// at the square root of 2.
+/// The max_edge for hints: 2.5 spacings. Near-duplicates do not lower it, because the eighth nearest point gives the
+/// spacing, too: on a square grid it is at the square root of 2.
 double suggested_max_edge(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double spacing) {
     return 2.5 * std::max(spacing, median_distance(points, neighbourhoods, 7) / std::numbers::sqrt2);
 }
 
-/// Throws Error when most points have no other one nearer than max_edge.
+/// Throws Error if most points have no other point nearer than max_edge.
 void require_neighbours(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double max_edge,
                         double spacing) {
     std::size_t alone = 0;
@@ -218,13 +220,13 @@ void require_neighbours(const DistinctPoints& points, const Neighbourhoods& neig
     }
     if (2 * alone > points.size())
         throw Error(
-            "max-edge {:.3g} u is {:.2g} of the spacing {:.3g} u: {} of {} points would be clusters of one point",
+            "max-edge {:.3g} u is {:.2g} times the spacing {:.3g} u: {} of {} points would be clusters of one point",
             max_edge, max_edge / spacing, spacing, alone, points.size())
             .hint(fmt::format("try {:.3g} u, or leave max-edge at `auto`",
                               suggested_max_edge(points, neighbourhoods, spacing)));
 }
 
-/// The distance of the slicing planes. Throws Error if a given one makes too many slices.
+/// The distance between the slicing planes. Throws Error if a given distance makes too many slices.
 double slice_of(const DistinctPoints& points, const ClusterMeshParams& params, double max_edge) {
     constexpr double most = 1e9;
     const BoundingBox box = bounding_box(points.positions);
@@ -250,14 +252,13 @@ double automatic_max_edge(const PointCloud& cloud, double spacing, Context& cont
     if (largest == 0) return 2.5 * spacing;
     if (largest > 2 * smallest)
         context.warn(
-            fmt::format("the column 'bin-size' has values from {:.3g} to {:.3g} u; max-edge follows the largest and "
-                        "may bridge what "
-                        "is closer in the finer parts; give max-edge, or thin with one voxel size",
+            fmt::format("the column 'bin-size' has values from {:.3g} to {:.3g} u; max-edge follows the largest value "
+                        "and may bridge gaps in the finer parts; give max-edge, or thin with one voxel size",
                         smallest, largest));
     return std::max(2.3 * largest, 2.5 * spacing);
 }
 
-/// The list of triangles from the fans, in the order of their lowest points.
+/// Lists the triangles of the fans in surface.triangles, in the order of their lowest points.
 void list_triangles(Surface& surface) {
     surface.triangles.clear();
     surface.passes.clear();
@@ -291,7 +292,7 @@ std::size_t flip_edges(Surface& surface, double max_edge, Context& context) {
     for (const auto& [a, b, c, d] : flipped.flips) {
         growing::Fans& fans = surface.fans;
         const std::array<Triangle, 2> before{{{a, b, c}, {b, a, d}}}, after{{{c, a, d}, {d, b, c}}};
-        // An earlier flip that was left out may have kept one of the triangles from being made.
+        // One of the triangles may not exist, because an earlier flip was left out.
         if (fans.left_of(a, b) != c || fans.left_of(b, a) != d || fans.left_of(c, d) != growing::invalid_index ||
             fans.left_of(d, c) != growing::invalid_index)
             continue;
@@ -306,8 +307,8 @@ std::size_t flip_edges(Surface& surface, double max_edge, Context& context) {
     return flips;
 }
 
-/// Removes, of every two triangles that intersect, the one with the smaller least angle, then extra fans. Returns the
-/// number of removed triangles.
+/// Of every two triangles that intersect, removes the one whose smallest angle is smaller. Then removes extra fans.
+/// Returns the number of removed triangles.
 std::size_t remove_intersecting(Surface& surface, Context& context) {
     const auto& p = surface.positions;
     const TriangleTree tree(p, surface.triangles, context.threads());
@@ -339,7 +340,7 @@ std::size_t remove_intersecting(Surface& surface, Context& context) {
     return count + growing::remove_extra_fans(surface);
 }
 
-/// The completion joins clusters of level 2 that growth kept apart.
+/// Joins clusters of level 2 whose points are corners of one triangle, because the completion makes such triangles.
 void unite_along_triangles(Clusters& clusters, const Surface& surface) {
     for (const auto& [a, b, c] : surface.triangles) {
         clusters.unite(a, b);
@@ -347,7 +348,7 @@ void unite_along_triangles(Clusters& clusters, const Surface& surface) {
     }
 }
 
-/// Replaces older columns of the same names, with a warning.
+/// Adds the columns `cluster-1` and `cluster-2`. Replaces older columns of these names, with a warning.
 void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh, Context& context) {
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
@@ -360,7 +361,7 @@ void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, Tri
     column("cluster-2", clusters.second_level());
 }
 
-/// Metrics as plugin.cpp declares them, warnings and doubts.
+/// Reports the metrics that plugin.cpp declares, and warnings and doubts.
 void report(const ClusterMeshResult& result, std::size_t points, Context& context) {
     const auto count = [&](std::string_view name, std::size_t value) {
         context.metric(name, static_cast<double>(value));
@@ -427,15 +428,16 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     insertion.complete();
     list_triangles(surface);
     if (surface.triangles.empty())
-        throw Error("no triangle with edges below max-edge {:.3g} u: {} points, spacing {:.3g} u", result.max_edge,
-                    points.size(), spacing)
+        throw Error("there is no triangle with edges below max-edge {:.3g} u; the {} points have a spacing of {:.3g} u",
+                    result.max_edge, points.size(), spacing)
             .hint(fmt::format("try max-edge {:.3g} u; thin the scan with larger voxels if it is noisy",
                               suggested_max_edge(points, neighbourhoods, spacing)));
     result.removed_triangles = growing::remove_extra_fans(surface);
     constexpr std::size_t few_edges = 4;
     result.closed_holes = growing::close_small_holes(surface, few_edges, context, result.max_edge);
     result.removed_triangles += growing::remove_extra_fans(surface);
-    const double largest_radius = 1 / std::sqrt(3.0);  // circumradius of an equilateral triangle with edges of max_edge
+    // The circumradius of an equilateral triangle with edges of length max_edge, in units of max_edge.
+    const double largest_radius = 1 / std::sqrt(3.0);
     const growing::NarrowHoles narrow =
         growing::close_narrow_holes(surface, {largest_radius, few_edges, std::numbers::pi, result.max_edge}, context);
     result.closed_holes += narrow.closed;

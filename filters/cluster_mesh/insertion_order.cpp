@@ -12,7 +12,8 @@ namespace scanmill::clustering {
 
 namespace {
 
-/// The points of each slice one after the other, within a slice in ascending order.
+/// The points, slice after slice; within a slice in ascending order. `begins` contains the start of each slice, and the
+/// end.
 struct Slices {
     Array<u32> points;
     std::vector<std::size_t> begins;
@@ -39,7 +40,8 @@ Slices sort_by_slice(std::span<const u32> slices) {
     return sorted;
 }
 
-/// Orders slices so that every point is near one before it: a heap of points by their distance to the inserted ones.
+/// Orders each slice so that every point is near an earlier point. Uses a heap of points by their distance to the
+/// inserted points.
 class NearestFirst {
 public:
     NearestFirst(const growing::DistinctPoints& points, const growing::Neighbourhoods& neighbourhoods,
@@ -105,7 +107,7 @@ private:
     const growing::DistinctPoints& points_;
     const growing::Neighbourhoods& neighbourhoods_;
     std::span<const u32> slices_;
-    /// Squared distance to the nearest inserted point that has the point among its nearest.
+    /// Squared distance to the nearest inserted point that has this point among its nearest points.
     std::vector<double> least_;
     std::vector<bool> inserted_;
     std::vector<Entry> heap_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The connected components of a growing mesh with their points, to be listed when one of them is reversed.
+/// The connected components of a growing mesh, with lists of their points. The lists are used to reverse a component.
 
 #include <numeric>
 #include <utility>
@@ -27,7 +27,7 @@ public:
         for_each(b, [&](u32 point) { label_[point] = label_[a]; });
         std::swap(next_[a], next_[b]);
     }
-    /// Makes every point of a component one of its own.
+    /// Makes every point in the component of `point` a component of its own.
     void separate(u32 point) {
         for (u32 at = point, next = next_[at];; at = std::exchange(next, next_[next])) {
             label_[at] = next_[at] = at;

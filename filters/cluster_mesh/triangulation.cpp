@@ -17,17 +17,18 @@ using growing::PointState;
 
 namespace {
 
-/// Outside angles at a boundary vertex are closed below this: 170 degrees.
+/// An outside angle at a boundary vertex is closed if it is below 170 degrees.
 constexpr double widest_corner_cosine = -0.984807753012208;
 
-/// A point over a triangle lies on one of its edges if it makes a triangle with a smaller share of the area there.
+/// A point over a triangle counts as on an edge if its triangle with that edge has a smaller share of the area.
 constexpr double least_share = 0.02;
 
-/// Meshes with more points join first where the surface is flat: elsewhere the sides that they face are less certain.
-/// Among 0, 6, 20 and 60, this value leaves the fewest loops on ten thinned models.
+/// Two meshes with more points than this first join only where the surface is flat, because elsewhere their
+/// orientations are less certain. Of the values 0, 6, 20 and 60, this one leaves the fewest loops on ten thinned
+/// models.
 constexpr std::size_t few_points = 6;
 
-/// Where the normals of near vertices are farther than 30 degrees from a triangle's, it is tested in space.
+/// If the normal of a near vertex is more than 30 degrees from a triangle's normal, the triangle is tested in space.
 constexpr double flat_cosine = 0.8660254037844387;
 
 }  // namespace
@@ -299,7 +300,7 @@ bool Triangulation::close_corners(u32 point, std::span<const u32> near, const Li
     const auto& p = surface_.positions;
     std::vector<Corner> corners;
     const auto consider = [&](u32 from, u32 at, u32 to, const Triangle& triangle) {
-        // Boundary from → at → to.
+        // The boundary goes from → at → to.
         const double cosine = (p[from] - p[at]).normalized().dot((p[to] - p[at]).normalized());
         if (from != to && cosine > widest_corner_cosine && is_short(from, to)) corners.push_back({cosine, triangle});
     };

@@ -47,7 +47,7 @@ TEST(ClusterMeshRefuses, NaN) {
 
 TEST(ClusterMeshRefuses, AMaxEdgeFarBelowTheSpacing) {
     expect_refusal(grid(10, 10), with_max_edge(0.1),
-                   "max-edge 0.1 u is 0.1 of the spacing 1 u: 100 of 100 points would be clusters of one point",
+                   "max-edge 0.1 u is 0.1 times the spacing 1 u: 100 of 100 points would be clusters of one point",
                    "try 2.5 u");
 }
 
