@@ -77,7 +77,7 @@ struct NearRegion {
 struct Chunks {
     /// First row of every chunk, and the number of points as last element.
     std::vector<std::size_t> begin;
-    /// The positions of a chunk. May fill and return `buffer`. Called from several threads.
+    /// Returns the positions of a chunk; may store them in `buffer`. Is called from several threads.
     std::function<std::span<const Vec3>(std::size_t chunk, Array<Vec3>& buffer)> read;
     std::function<PointCloud(std::span<const u32> rows)> gather;
     Frame frame;
@@ -86,7 +86,7 @@ struct Chunks {
     std::size_t points() const { return begin.back(); }
 };
 
-/// Points of a chunk of a cloud in memory.
+/// Number of points in a chunk of a cloud in memory.
 constexpr std::size_t chunk_size = std::size_t(1) << 14;
 
 Chunks chunks_of(const PointCloud& cloud) {
@@ -110,7 +110,7 @@ Chunks chunks_of(const PointStream& scan, unsigned threads) {
             [&scan, threads](std::span<const u32> rows) { return scan.gather(rows, threads); }, scan.frame()};
 }
 
-/// With the box of the cloud and the distance of the nearest point.
+/// Throws Error for a region without points, with the box of the cloud and the distance of the nearest point.
 template <class Region>
 [[noreturn]] void throw_empty(const Chunks& chunks, const Region& region, Context& context) {
     BoundingBox box;
@@ -179,7 +179,7 @@ BoundingBox box_of(std::span<const Length> lengths) {
     return box;
 }
 
-/// Throws Error unless exactly one region is given, whole, with valid numbers.
+/// Throws Error unless exactly one region is given, complete and with valid numbers.
 void require_one_region(const CropParams& params) {
     std::vector<std::string> given;
     if (params.box) given.push_back("`box`");
@@ -190,7 +190,7 @@ void require_one_region(const CropParams& params) {
             .hint("give `box`, `centre` with `radius`, or `within` with a value at `near`");
     if (given.size() > 1)
         throw Error("{} regions are given, {}; only 1 is possible", given.size(), enumerated(given))
-            .hint("for the points in both, write two steps");
+            .hint("for the points that lie in all of them, write one step per region");
     if (params.centre && !params.radius)
         throw Error("`centre` is given without `radius`; a ball needs both").hint("add `radius`, or give a `box`");
     if (params.radius && !params.centre)
@@ -225,11 +225,11 @@ Buffer<Vec3> positions_beside(const PointCloud& cloud, const Frame& near, const 
     if (near.unit != cloud.frame.unit)
         throw Error("the {} points are in {}, and the {} points or vertices at `near` in {}; both need one unit",
                     cloud.size(), symbol(cloud.frame.unit), positions.size(), symbol(near.unit))
-            .hint("convert one of them (u: a unit that is not declared)");
+            .hint("convert one of them (the unit u means that no unit is declared)");
     return translated(positions, near.origin - cloud.frame.origin);
 }
 
-/// Throws Error for everything that is refused before a tree is made.
+/// Throws Error for everything that is refused before a tree is built.
 void require_near(const PointCloud& cloud, std::span<const Vec3> near, std::string_view what,
                   const CropParams& params) {
     require_one_region(params);
