@@ -51,7 +51,7 @@ struct APatchResult {
     /// By vertex of `mesh`: whether the surface has a tip there; false for vertices beyond the end of the vector.
     std::vector<bool> pointed;
     std::size_t raised = 0;  ///< see Weights::raised
-    std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
+    std::size_t inverted = 0;  ///< number of tetrahedra that are inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, relative to the longer
     /// gradient. It is measured at three points per triangle.
     double c1_jump = 0;
@@ -88,8 +88,8 @@ struct APatchResult {
 ///    The bisections are undone unless they repair at least half of these triangles.
 /// 3. If a crease leaves the tetrahedra beside its edge, the edge is bisected, in up to two rounds. The bisections are
 ///    undone unless they repair at least half of these edges. Then the normals at the edges' ends are turned along the
-///    edges. Then a sharp edge becomes smooth if its triangles' normals differ by less than 30 degrees, or if the
-///    normals on its two sides do so at both ends.
+///    edges. Then a sharp edge becomes smooth if its triangles' normals differ by less than 30 degrees, or if at both
+///    ends the normals on its two sides differ by less than that.
 /// 4. Where that does not help, the gradient at a vertex becomes 0: the surface has a tip there. If a crease between a
 ///    tip and another vertex leaves its tetrahedra, its edge is bisected, and the crease becomes straight from the tip
 ///    to the middle of the edge.

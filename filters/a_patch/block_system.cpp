@@ -148,9 +148,9 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
         system.solve(x, execution);
         return x;
     };
-    // The solutions with the smallest weight stand for the data's own solutions. Up to a constant, a solution's squared
-    // error is its squared difference from the data's own solution, in the norm of the data's matrix. This also holds
-    // for the summands of the rows near one row.
+    // The solutions with the smallest weight approximate the solutions of the data alone. Up to a constant, a
+    // solution's squared error is its squared difference from the solution of the other half's data alone, in the norm
+    // of the data's matrix. This also holds for the summands of the rows near one row.
     const std::array<Solution, 2> least{solution(0, weights.front()), solution(1, weights.front())};
     std::vector<double> size_of_least(size, 0.0), best(size, weights.front()), least_error;
     for (std::size_t half = 0; half < 2; ++half) {

@@ -196,8 +196,8 @@ std::size_t inverted_tets(const PatchComplex& patches) {
         const Vec3& o = patches.positions[t[0]];
         const double volume =
             (patches.positions[t[1]] - o).cross(patches.positions[t[2]] - o).dot(patches.positions[t[3]] - o);
-        // Seen from a base point, corners i, j and the apex turn in the opposite direction than seen from an edge
-        // point. The direction is also opposite inside and outside.
+        // Corners i, j and the apex turn in one direction as seen from a base point, and in the other direction as seen
+        // from an edge point. Inside, both directions are the reverse of those outside.
         const bool is_over_face =
             patches.kinds[row] == PatchKind::face || patches.kinds[row] == PatchKind::continuation;
         const bool is_positive = is_over_face == (patches.sides[row] == 1);

@@ -474,7 +474,7 @@ PointDistances distances(const Hull& hull, const PatchComplex& patches, std::spa
             if (const auto foot = surface.foot(p, mesh.nearest_point(p, hint))) {
                 result.to_surface[i] = std::abs(foot->distance);
             } else {
-                // Near the boundary of an open surface.
+                // There is no foot point near the boundary of an open surface.
                 const PatchCell cell = surface.cell(point.tet);
                 result.to_surface[i] = std::abs(cell.value(p)) / std::max(least_gradient, cell.gradient(p).norm());
             }

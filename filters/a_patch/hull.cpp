@@ -24,7 +24,7 @@ constexpr double most_change = 0.1;  // largest change of an edge's gradient, wh
 constexpr double most_cosine_of_straight = 1e-12;  // rounding of the cosine between perpendicular edge and normal
 constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
 constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
-constexpr double least_turn = 1e-9;  // sines of angles between normals
+constexpr double least_turn = 1e-9;  // normals at a smaller sine count as parallel
 constexpr std::size_t chunk = 256;  // triangles
 // Cosines of the limits of the angle between two apexes, seen along their edge: 4 and 172 degrees.
 constexpr double cosine_of_4 = 0.9975640502598242, cosine_of_172 = -0.9902680687415704;

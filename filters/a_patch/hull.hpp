@@ -134,8 +134,8 @@ inline constexpr double least_cosine = 0.1;
 /// 0.45 of the distance to the next sheet of the mesh, unless it must be higher. Triangles with a sharp edge are
 /// divided. The result refers to `mesh`.
 ///
-/// Pre: an oriented manifold whose triangles have an area. A normal at a corner is zero, or its angle to the triangle's
-/// normal has at least the cosine least_cosine.
+/// Pre: an oriented manifold whose triangles have an area. A normal at a corner is zero, or has a cosine of at least
+/// least_cosine with the triangle's normal.
 Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution);
 
 }  // namespace scanmill::a_patches

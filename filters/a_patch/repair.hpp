@@ -7,12 +7,12 @@
 namespace scanmill::a_patches {
 
 struct Repairs {
-    std::size_t replaced = 0;  ///< normals
-    std::size_t bisected = 0;  ///< edges
-    std::size_t creased = 0;   ///< edges made sharp
-    std::size_t smoothed = 0;  ///< sharp edges made smooth
-    std::size_t pointed = 0;  ///< vertices
-    std::size_t straightened = 0;  ///< edges made sharp and straight
+    std::size_t replaced = 0;  ///< number of normals replaced
+    std::size_t bisected = 0;  ///< number of edges bisected
+    std::size_t creased = 0;   ///< number of edges made sharp
+    std::size_t smoothed = 0;  ///< number of sharp edges made smooth
+    std::size_t pointed = 0;  ///< number of vertices with a tip
+    std::size_t straightened = 0;  ///< number of edges made sharp and straight
 };
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
@@ -29,9 +29,9 @@ bool opposes(const Vec3& direction, std::span<const Vec3> normals);
 void replace_opposing(PatchMesh& mesh, Repairs& repairs);
 
 /// Makes a sector's normal perpendicular to the one or two sharp edges at its sides if a turn of at most 2 degrees
-/// suffices. The normal must be almost perpendicular to each edge, or much nearer to that than the normal beyond the
-/// edge. Then a plane face meets a curved face in a plane curve, and another plane face in a straight line. Rounding
-/// would make the plane cross the chord of the curve.
+/// suffices. Each edge sets a condition: the normal is almost perpendicular to it, or much closer to perpendicular than
+/// the normal beyond the edge. Then a plane face meets a curved face in a plane curve, and another plane face in a
+/// straight line. Without this, rounding would make the plane cross the chord of the curve.
 void level_normals(PatchMesh& mesh);
 
 /// Sets each normal at the triangles' corners to the direction nearest to the normals of all triangles of its sector.
@@ -43,8 +43,9 @@ void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repa
 /// one.
 void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
-/// Makes a sharp edge smooth if the normals of its triangles differ by less than 30 degrees, or if the normals on its
-/// two sides do so at both ends. The ends get the mean of the normals. Returns the number of edges made smooth.
+/// Makes a sharp edge smooth if the normals of its triangles differ by less than 30 degrees, or if at both ends the
+/// normals on its two sides differ by less than that. The ends get the mean of the normals. Returns the number of edges
+/// made smooth.
 std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
 /// Makes the ends of the edges and the corners of the triangles pointed. If all of these vertices are pointed already,

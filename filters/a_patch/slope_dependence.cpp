@@ -91,7 +91,7 @@ void SlopeDependence::set_edge(u32 number, std::size_t triangles) {
         const Triangle& t = hull_->triangles[faces[of]];
         const Vec3 apex = hull_->apex(faces[of], side_);
         unit_[0][of] = effect(number, apex);
-        // The edges from i to the third corner, and from j. i and j are ordered as in the tetrahedron's own triangle.
+        // The edges from i and from j to the third corner. i and j are ordered as in the tetrahedron's own triangle.
         const std::size_t here = hull_->number_in(number, faces[of]);
         const std::size_t at_i = of == 0 ? previous(here) : next(here), at_j = of == 0 ? next(here) : previous(here);
         edges_[1 + 2 * of] = face.edges[at_i];
