@@ -3,10 +3,11 @@
 /// The radii at which the facets of one cell become walls while alpha grows. All values are squared radii.
 ///
 /// A facet enters the alpha-shape at its own circumradius, unless it is attached. It is attached if an opposite corner
-/// of one of its cells lies strictly inside its smallest circumsphere. Then it enters with the smaller of its cells
-/// (Edelsbrunner, Mücke 1994). A corner lies inside exactly when the circumcentre of its cell lies beyond the facet. If
-/// the circumcentres of both cells lie on one side of the facet, the cell on the other side is the smaller one. So each
-/// cell alone determines whether it attaches a facet; if it does, its own radius is the facet's value.
+/// of one of its cells lies strictly inside its smallest circumsphere. Then it enters with the smaller circumsphere of
+/// its cells (Edelsbrunner, Mücke 1994). A corner lies inside exactly when the circumcentre of its cell lies beyond the
+/// facet. If the circumcentres of both cells lie on one side of the facet, the cell on the other side has the smaller
+/// circumsphere. So each cell alone determines whether it attaches a facet; if it does, its own radius is the facet's
+/// value.
 ///
 /// For weighted points, a sphere with centre c and squared radius r² is orthogonal to points p of weight w_p if |c -
 /// p|² - w_p = r² for all of them. The largest weight is subtracted from all weights, which changes no cell. Then r² =
@@ -26,7 +27,7 @@
 
 namespace scanmill::alpha {
 
-/// The squared circumradius of a triangle. Pre: not collinear.
+/// The squared circumradius of a triangle. Pre: the points are not collinear.
 double squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The contribution of a cell to the values of its facets.

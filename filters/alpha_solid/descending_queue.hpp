@@ -25,9 +25,9 @@ public:
     /// The value of the last item popped; infinite at first.
     double level() const { return std::bit_cast<double>(~level_); }
 
-    /// Pops the next item that `wanted(item)` accepts into `item`. Returns false if no item is left. Items of equal
-    /// value are popped last in, first out. `wanted` is called once per push, when the item's value is the level.
-    /// `soon(item)` is called for some items shortly before they are popped, to prefetch their data.
+    /// Pops the next item that `wanted(item)` accepts, and stores it in `item`. Returns false if no item is left. Items
+    /// of equal value are popped last in, first out. `wanted` is called once per push, when the item's value is the
+    /// level. `soon(item)` is called for some items shortly before they are popped, to prefetch their data.
     template <class Wanted, class Soon>
     bool pop(u32& item, const Wanted& wanted, const Soon& soon) {
         Array<Entry>& current = buckets_[0];

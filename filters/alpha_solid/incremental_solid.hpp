@@ -14,8 +14,8 @@ namespace scanmill::alpha {
 
 class IncrementalSolid {
 public:
-    /// `suspects` are the vertices whose boundary triangles may not form exactly one closed fan. Pre: those of all
-    /// other vertices do.
+    /// `suspects` are the vertices whose boundary triangles may not form exactly one closed fan. Pre: all other
+    /// vertices have one closed fan, or no boundary triangle.
     IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects);
 
     /// Makes the cells solid, and every left-out cell that they join to the solid across facets.
@@ -47,8 +47,9 @@ private:
 
     const TetMesh& tets_;
     Array<u8> labels_;
-    /// From `next_suspect_` on, oldest first, because a vertex that was non-manifold from the start is likely to stay
-    /// so for long. The suspect at `next_suspect_` is non-manifold unless its star has changed since its test.
+    /// The suspects are the elements from `next_suspect_` on. The oldest come first, because a vertex that was
+    /// non-manifold from the start is likely to stay so for long. The suspect at `next_suspect_` is non-manifold unless
+    /// its star has changed since its test.
     std::vector<u32> suspects_;
     std::size_t next_suspect_ = 0;
     bool next_changed_ = true;

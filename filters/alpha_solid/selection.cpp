@@ -93,8 +93,8 @@ public:
                     component_count_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
     }
 
-    /// With full coverage: whether the components are as requested. With less: whether a component has enough points;
-    /// the largest component is then kept.
+    /// With full coverage: whether the number of components is as requested. With less: whether a component has enough
+    /// points; the largest component is then kept.
     bool has_required_component() {
         if (!components_) return component_count_ == 1;
         if (components_->most_points() < selector_.needed_) return false;

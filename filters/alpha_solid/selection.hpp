@@ -45,8 +45,8 @@ public:
     Selection given(double value) const;
     /// The smallest valid alpha-solid, or a repaired one if none is valid up to max_scan times alpha_cover. For
     /// `single` with coverage below 100 %, it is the solid for that share or the solid for all points: the one with the
-    /// smaller alpha. The solid for all points may have the smaller alpha, because components that touch count as one
-    /// there; it may be repaired before they are joined across facets.
+    /// smaller alpha. The solid for all points may have the smaller alpha, because its components count as one when
+    /// they touch. It may be repaired before they are joined across facets.
     Selection scan() const;
     /// A valid alpha-solid by bisection between alpha_cover and the hull.
     Selection bisect() const;

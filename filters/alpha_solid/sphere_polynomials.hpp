@@ -57,7 +57,7 @@ Offsets<Number, sizeof...(Others)> offsets_from(const Vec3& origin, const Others
     return {offset(others)...};
 }
 
-/// |u|² v×w + |v|² w×u + |w|² u×v.
+/// Returns |u|² v×w + |v|² w×u + |w|² u×v.
 template <class Number>
 Offset<Number> circumcentre_numerator(const Number& uu, const Number& vv, const Number& ww, const Offset<Number>& vw,
                                       const Offset<Number>& wu, const Offset<Number>& uv) {
