@@ -46,7 +46,7 @@ struct ClusterMeshParams {
     /// Three numbers, not all 0: the direction that flat components face.
     std::vector<double> up{0, 0, 1};
     /// A new triangle is created if the angle between its normal and that of the triangle whose edge it continues is at
-    /// most this. Otherwise neighbours decide. Above 0, at most 180 degrees.
+    /// most this. Otherwise neighbour_angle decides. Above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);
     /// Beyond max_normal_angle, the surface continues only if a neighbour of the continued triangle agrees. The check
     /// triangle consists of the new point and the edge between these two triangles. The neighbour agrees if the angle

@@ -27,11 +27,11 @@ struct Limits {
     double joint_cosine;  ///< smallest cosine between the normals at a common edge other than the winner edge
     double point_cosine;  ///< smallest cosine between the normals of the triangle and of its points
     double sharp_cosine;  ///< point_cosine for points at sharp edges
-    /// The sphere around the triangle's circumcircle contains no boundary point. With `leaves_room`, it also contains
-    /// no point that is in no triangle yet.
+    /// If set, the sphere around the triangle's circumcircle contains no boundary point. With `leaves_room`, it also
+    /// contains no point that is in no triangle yet.
     bool empty_circle;
-    bool leaves_room;  ///< no point that is in no triangle yet lies over the triangle
-    bool in_space;  ///< test intersections in space everywhere, not only near surfaces that face another direction
+    bool leaves_room;  ///< if set, no point that is in no triangle yet lies over the triangle
+    bool in_space;  ///< if set, intersections are tested in space everywhere
 };
 
 /// The limits of the paper's tests of a winner edge. The check triangle joins the new point to the edge between the
