@@ -65,7 +65,7 @@ struct NearRegion {
     std::string name;
 
     bool contains(const Vec3& position, u32& hint) const { return tree.is_within(position, within * within, hint); }
-    /// Infinite if it is larger than `limit`.
+    /// Squared distance from the nearest point; infinite if it is larger than `limit`.
     double squared_distance(const Vec3& position, double limit, u32& hint) const {
         if (!tree.is_within(position, limit, hint)) return std::numeric_limits<double>::infinity();
         return tree.nearest(position, hint).squared_distance;

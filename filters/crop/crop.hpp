@@ -31,7 +31,7 @@ struct CropParams {
 struct CropResult {
     /// The kept points in input order, with all columns, in the frame of the input.
     PointCloud points;
-    /// Their rows in the input, ascending.
+    /// Rows of the kept points in the input, ascending.
     Array<u32> kept;
     /// Number of points that are not kept.
     std::size_t removed = 0;
