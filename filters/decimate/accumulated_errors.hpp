@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Errors of a hole's triangulation as the paper accumulates them: the errors of the old triangles, and the distance
-/// between the old and the new ones.
+/// Errors of a hole's triangulation, accumulated as in the paper: the error of an old triangle plus its distance to the
+/// new triangle.
 ///
-/// Old and new triangles are projected along `up`, so none of them may face away from it. Over each cell of their
-/// overlay both are planes, so their distance is largest at a corner of a cell: where an old inner edge crosses a new
-/// edge, or at the removed vertex. Source: Bernardini, Bajaj, Chen, Schikore 1997, section 4.
+/// Old and new triangles are projected along `up`; none of them may face away from `up`. In each cell of their overlay,
+/// the old and the new surface are planes, so their distance is largest at a corner of the cell. Only two kinds of
+/// corners have a distance: crossings of an old inner edge with a new edge, and the removed vertex. Source: Bernardini,
+/// Bajaj, Chen, Schikore 1997, section 4.
 
 #include "decimate/hole.hpp"
 #include "decimate/surface.hpp"
 
 namespace scanmill::decimating {
 
-/// An edge that the edit removes, with the old triangles on both sides by their index; equal on the boundary of the
-/// hole's side.
+/// An edge between two old triangles, which the edit removes. `triangles`: the indices of these two.
 struct OldEdge {
     Vec3 from, to;
     std::array<u32, 2> triangles;
@@ -23,9 +23,10 @@ class AccumulatedErrors : public HoleErrors {
 public:
     AccumulatedErrors(const Surface& surface, const Limits& limits) : surface_(surface), limits_(limits) {}
 
-    /// `old_errors` by old triangle; `old_edges` the removed ones; `ring_triangles`: of every corner the old triangle
-    /// at the polygon's edge from it to the next corner (any beyond the number of old triangles if that edge is new).
-    /// `removed`: the removed vertex, if it is inside. `line`: errors of the feature line, which all triangles get.
+    /// Keeps the spans and `removed`. `up`: unit direction of the projection. `old_errors`: by old triangle.
+    /// `ring_triangles`: for each corner, the old triangle at the polygon's edge from this corner to the next; any
+    /// index from old_errors.size() on if that edge is new. `removed`: position of the removed vertex; null if there is
+    /// none inside the hole. `line`: errors of the feature line, which apply to every triangle.
     void begin(std::span<const HoleCorner> corners, const Vec3& up, std::span<const SignedErrors> old_errors,
                std::span<const OldEdge> old_edges, std::span<const u32> ring_triangles, const Vec3* removed,
                const SignedErrors& line);

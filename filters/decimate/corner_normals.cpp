@@ -10,10 +10,10 @@ namespace scanmill::decimating {
 
 namespace {
 
-/// Below this cosine to the mean a facet does not belong to a sector with a normal.
+/// A sector has a normal only if the cosine between the mean and each of its facet normals is at least this.
 constexpr double least_cosine = 0.1;
 
-/// Computes the sectors of one vertex after the other.
+/// Sectors of the original surface around one vertex at a time.
 class Sectors {
 public:
     Sectors(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite,
@@ -24,13 +24,13 @@ public:
           opposite_(opposite),
           normals_(normals) {}
 
-    /// Finds the sectors of the original surface at the vertex; the first begins at its first feature edge.
+    /// Finds the sectors at the vertex. The first one begins at the vertex's first feature edge, if it has any.
     void find(u32 vertex) {
         sums_.clear();
         facets_.clear();
         ends_.clear();
         u32 half_edge = features_.first(vertex);
-        // An open fan begins at its boundary edge; a closed one is turned to begin at a feature edge.
+        // An open fan begins at its boundary edge. In a closed fan, the search moves on to a feature edge.
         if (opposite_[half_edge] != half_edges::boundary) {
             const u32 begin = half_edge;
             while (!features_.is_feature(half_edge)) {
@@ -63,7 +63,7 @@ public:
             if (!has_normal[i]) sums_[i].setZero();
     }
 
-    /// Calls action(half-edge of the new mesh, normal) for every corner at the vertex. Pre: find().
+    /// Calls action(half-edge of the new mesh, normal) for every corner at the vertex. Pre: find() for this vertex.
     template <class Action>
     void for_each_corner(u32 vertex, Action&& action) {
         const EditableMesh& mesh = surface_.mesh();
@@ -77,7 +77,8 @@ public:
             return;
         }
         std::ranges::rotate(corners_, std::ranges::find(corners_, true, &Corner::begins_sector));
-        // The first sector: the one whose feature edges, from it on, lead to the same vertices.
+        // Finds the original sector at which the new sectors begin: from there on, old and new feature edges lead to
+        // the same vertices in order.
         std::vector<u32> new_ends;
         for (const Corner& corner : corners_)
             if (corner.begins_sector) new_ends.push_back(mesh.end(corner.half_edge));
@@ -110,7 +111,8 @@ private:
     std::span<const Vec3> normals_;
     std::vector<Vec3> sums_;  ///< by sector
     std::vector<std::pair<std::size_t, Vec3>> facets_;  ///< sector and normal
-    std::vector<u32> ends_;  ///< by feature edge that begins a sector: the vertex left at the end of its line
+    /// For each feature edge that begins a sector, the remaining vertex to which its line leads.
+    std::vector<u32> ends_;
     std::vector<Corner> corners_;
 };
 

@@ -9,12 +9,13 @@ namespace scanmill::decimating {
 /// Three components for each of the three corners of a triangle.
 using CornerNormals = std::array<double, 9>;
 
-/// By triangle of surface.mesh().compact_triangles(): at every corner the unit normal of its sector.
+/// For each triangle of surface.mesh().compact_triangles(), the unit normals of the sectors at its three corners.
 ///
-/// The sectors of a vertex are its triangles between consecutive feature edges; the normal of a sector is the mean of
-/// the normals of the original triangles, weighted by their angles at the vertex. The vertices that are left keep their
-/// feature edges in order, so the sectors of new and original triangles correspond. Zero where there is no normal: at
-/// singular vertices, and in sectors with a triangle whose normal has a cosine below 0.1 with the mean.
+/// A sector of a vertex is the group of its triangles between two consecutive feature edges. The normal of a sector is
+/// the mean of the normals of its original triangles, weighted by their angles at the vertex. The remaining vertices
+/// keep their feature edges in order, so the sectors of new and original triangles correspond. The normal is zero at
+/// singular vertices. It is also zero in a sector where the cosine between a triangle's normal and the mean is below
+/// 0.1.
 ///
 /// `normals`: facet_normals() of the original mesh. Cost: linear.
 Array<CornerNormals> corner_normals(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite,

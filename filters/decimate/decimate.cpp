@@ -22,15 +22,17 @@ namespace {
 
 using namespace decimating;
 
-/// Features smaller than this many times the largest error are roughness. On scanned models 4 leaves few corners of
-/// noise, and on CAD models it loses no line of the model at errors up to 1 % of the diagonal.
+/// Features smaller than this many times the largest error are roughness. On scanned models, this value leaves few
+/// corners that are due to noise. On CAD models, it loses no line of the model at errors up to 1 % of the diagonal.
 constexpr double feature_reach = 4;
 /// Sine of 5 degrees, the least angle of triangles in flat faces.
 constexpr double flat_angle_sine = 0.08715574274765817;
-/// Removal stays within this share of the largest error, so that the certificate needs few cuts to prove the whole.
+/// Share of the largest error that removals may use. The rest lets the certificate prove the largest error with few
+/// cuts.
 constexpr double steering_share = 1 - 0x1p-10;
-/// If the certificate exceeds the largest error nevertheless, decimation is repeated with this share of the value that
-/// would have sufficed. `most_attempts` limits the repeats.
+/// If the certificate still exceeds the largest error, decimation is repeated with a smaller error. That error is
+/// scaled by the excess of the certificate, and by this factor for safety. `most_attempts` limits the number of
+/// attempts.
 constexpr double again_share = 0.98;
 constexpr int most_attempts = 4;
 /// Least error bound, as a share of the diagonal: the certificate cannot prove a smaller one.
@@ -81,7 +83,7 @@ void require_usable(const TriangleMesh& mesh) {
     require_finite(mesh.positions.span(), "vertices");
 }
 
-/// Warns about what the result loses, and about seams. `lowest`: lowest_at_position().
+/// Warns about data that the result loses, and about seams. `lowest`: lowest_at_position().
 void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& context) {
     std::size_t unused = mesh.positions.size();
     std::vector<bool> is_used(mesh.positions.size(), false);
@@ -103,7 +105,7 @@ void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& 
             is_taken[lowest[vertex]] = true;
         }
     if (duplicates > 0)
-        context.warn(fmt::format("{} the position of another one; the mesh is open between them, and stays so",
+        context.warn(fmt::format("{} the position of another vertex; the mesh is open there and stays open",
                                  count_text(duplicates, "vertex has", "vertices have")));
 }
 
@@ -114,10 +116,10 @@ Buffer<Vec3> data_positions(const PointCloud& points, const Frame& frame) {
     return translated(points.positions, points.frame.origin - frame.origin);
 }
 
-/// The vertices of the result: numbers, and class.
+/// The vertices of the result.
 struct Kept {
     Array<u32> vertices;  ///< rows of the input's vertices, ascending
-    Array<u32> numbers;  ///< by vertex of the input
+    Array<u32> numbers;  ///< by vertex of the input: its row in the result, or `none`
 };
 
 Kept kept_vertices(const EditableMesh& mesh) {
@@ -144,7 +146,7 @@ Array<Edge> sharp_edges_of(const Surface& surface, const Array<u32>& numbers) {
     return edges;
 }
 
-/// Lines of sharp edges: they end at vertices that are not of class crease; closed ones have no end.
+/// Number of lines of sharp edges. A line ends at vertices whose class is not crease; a closed line has no end.
 std::size_t count_lines(std::span<const Edge> edges, std::span<const u8> classes) {
     DisjointSets vertices(classes.size());
     std::vector<u32> degree(classes.size(), 0);
@@ -208,8 +210,8 @@ TriangleMesh result_mesh(const TriangleMesh& mesh, const Surface& surface, std::
 
 [[noreturn]] void throw_exceeded(const CertifiedHausdorff& certificate, double bound, DecimateMode mode) {
     throw Error(
-        "the distance between input and result is not proven to be within max-error, which is {:.6g} u: it is "
-        "at least {:.6g} u, and at most {:.6g} u",
+        "the distance between input and result is not proven to be within max-error ({:.6g} u); the distance is at "
+        "least {:.6g} u and at most {:.6g} u",
         bound, certificate.lower, certificate.upper)
         .hint(mode == DecimateMode::accumulated ? "use mode: direct, which measures errors to the input"
                                                 : "use a slightly different max-error");
@@ -230,14 +232,14 @@ void report(const DecimateResult& result, Context& context) {
     count("points-beyond", result.points_beyond);
 }
 
-/// The input, and what does not depend on the attempt.
+/// The input, and the data derived from it that all attempts share.
 struct Input {
     const TriangleMesh& mesh;
     const Array<u32>& opposite;
     const FacetNormals& normals;
     const OriginalSurface& original;
     std::span<const Vec3> data;
-    std::span<const u32> data_triangles;  ///< NearestTriangle::none: left out
+    std::span<const u32> data_triangles;  ///< by data point; NearestTriangle::none if it is left out
 };
 
 DecimateResult attempt(const Input& input, const Limits& limits, const DecimateParams& params, Context& context) {
@@ -270,12 +272,12 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     Buffer<Vec3> data;
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
-    (void)EditableMesh(mesh, opposite);  // refuses repeated vertices and several fans, which the rest relies on
+    (void)EditableMesh(mesh, opposite);  // refuses repeated vertices and vertices with several fans
     const Array<u32> lowest = lowest_at_position(mesh.positions.span());
     warn_about(mesh, lowest, context);
     if (max_error >= box.diagonal())
         context.warn(fmt::format(
-            "max-error is {:.6g} u and the mesh's diagonal {:.6g} u: only the topology and the shapes of triangles "
+            "max-error is {:.6g} u and the mesh's diagonal is {:.6g} u: only the topology and the shapes of triangles "
             "limit the result",
             max_error, box.diagonal()));
     const FeatureScale scale{params.sharp_angle.in_radians(), params.corner_angle.in_radians(),
@@ -284,8 +286,8 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     const FeatureNetwork features(mesh, opposite, normals.unit, scale, context.threads());
     if (features.ignored_declared() > 0)
         context.warn(
-            fmt::format("{} of the {} sharp edges of the mesh {} treated as smooth: their lines end within {} "
-                        "max-error, or enclose no larger face",
+            fmt::format("{} of the {} sharp edges of the mesh {} treated as smooth: their lines have a free end and "
+                        "are shorter than {} max-error, or they enclose faces that are as small",
                         features.ignored_declared(), mesh.sharp_edges.size(),
                         by_count(features.ignored_declared(), "is", "are"), feature_reach));
     const OriginalSurface original(mesh, opposite, lowest, features);
@@ -318,10 +320,9 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
             "{} of the {} points {} farther than max-error from the input mesh; {} not limit the result", left_out,
             data.size(), by_count(left_out, "is", "are"), by_count(left_out, "it does", "they do")));
     if (params.target_triangles > 0 && result.mesh.triangles.size() > params.target_triangles)
-        context.warn(
-            fmt::format("{} triangles are left, more than target-triangles, {}: max-error or another limit "
-                        "forbids further removals",
-                        result.mesh.triangles.size(), params.target_triangles));
+        context.warn(fmt::format(
+            "{} triangles are left, but target-triangles is {}: max-error or another limit forbids further removals",
+            result.mesh.triangles.size(), params.target_triangles));
     if (points != nullptr) {
         result.points_max = 0;
         if (!data.empty()) {

@@ -11,12 +11,12 @@ namespace scanmill::decimating {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
-/// Each round chooses from this share of the removable vertices, those with the smallest estimates. Between 0.03 and
-/// 0.3 the number of triangles of the result changes by less than 2 %; larger shares need fewer rounds.
+/// Each round chooses from this share of the removable vertices: those with the smallest estimates. For shares between
+/// 0.03 and 0.3, the number of triangles of the result changes by less than 2 %. Larger shares need fewer rounds.
 constexpr double share_of_round = 0.25;
 constexpr std::size_t least_of_round = 64;
 constexpr std::size_t chunk = 64;
-/// Sines of 25 and 20 degrees.
+/// Sines of 25 and 20 degrees, the least angles of the first passes.
 constexpr double first_angle_sines[] = {0.42261826174069944, 0.3420201433256687};
 
 }  // namespace
@@ -72,11 +72,12 @@ void Decimator::pick_vertices() {
         for (const u32 vertex : ring_) touched_[vertex] = round_;
         picked_.push_back(candidate.vertex);
     }
-    // Near the target only the first ones are removed. A removal takes two triangles, on the boundary one.
+    // Near the target, only the first candidates are removed. A removal takes away two triangles, or one on the
+    // boundary.
     const std::size_t triangles = surface_.mesh().triangles();
     const std::size_t needed = triangles > target_ ? (triangles - target_ + 1) / 2 : 0;
     if (picked_.size() > needed) picked_.resize(needed);
-    std::ranges::sort(picked_);  // neighbours in memory are planned after each other
+    std::ranges::sort(picked_);  // plans neighbours in memory one after the other
 }
 
 void Decimator::open_all_edges() {
@@ -198,7 +199,7 @@ DecimatorCounts Decimator::run(bool flips_edges) {
     }
     limits_.angle_sine = least;
     limits_.flat_angle_sine = least_on_flat;
-    // Edits make others possible that are farther away, so all are tried until none is.
+    // An edit can make distant edits possible, so all are tried again until none is possible.
     DecimatorCounts before;
     do {
         before = counts_;

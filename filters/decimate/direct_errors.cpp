@@ -17,7 +17,7 @@ void DirectErrors::begin(std::span<const HoleCorner> corners, const Vec3& up, st
     for (const u32 point : points) points_.push_back(surface_.point(point));
     words_ = (points.size() + 63) / 64;
     const u32 size = static_cast<u32>(corners.size());
-    // All points are inside the polygon's own edges: left of (i, i + 1), right of (0, last).
+    // All points are inside the polygon: left of its edges (i, i + 1), right of (0, last).
     left_.assign(size * size * words_, ~u64(0));
     std::fill_n(left_.begin() + static_cast<std::ptrdiff_t>(index(0, size - 1)), words_, 0);
     for (u32 i = 0; i < size; ++i)

@@ -14,14 +14,14 @@ struct Edit {
     u32 element = EditableMesh::none;
     bool is_flip = false;
     bool is_possible = false;
-    /// The rows that it replaces. Those of a flip: of the half-edge, and of its opposite.
+    /// The rows of the old triangles. For a flip: the row of the half-edge, then that of its opposite.
     std::vector<u32> old_rows;
-    /// The new triangles by their vertices, and for a removal by positions in the ring. Those of a flip are in the
-    /// order of EditableMesh::flip().
+    /// The new triangles, by their vertices and by the positions of these in the ring. A flip lists its triangles in
+    /// the order of EditableMesh::flip().
     std::vector<Triangle> triangles;
     std::vector<EditableMesh::RingTriangle> ring_triangles;
     std::vector<SignedErrors> errors;  ///< by triangle
-    /// Points of the original surface that the old triangles represent, and the new triangle of each.
+    /// Numbers of the points that the old triangles represent; for each of them, the index of the new triangle.
     std::vector<u32> points, owners;
 
     void clear(u32 new_element, bool flips) {

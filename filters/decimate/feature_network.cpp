@@ -77,7 +77,7 @@ void FeatureNetwork::remove_feature(u32 half_edge) {
 }
 
 void FeatureNetwork::prune_branches(double reach) {
-    // The shortest branch first: of two branches at a fork the longer one then continues the line.
+    // Removes the shortest branch first, so the longer of two branches at a fork continues the line.
     struct Branch {
         double length;
         u32 end;
@@ -120,7 +120,8 @@ void FeatureNetwork::prune_branches(double reach) {
 }
 
 bool FeatureNetwork::merge_small_faces(double least_area) {
-    // A face: triangles connected across edges that are no features. It joins the neighbour with the longest border.
+    // A face is a set of triangles connected across edges that are not features. A small face joins the neighbouring
+    // face with the longest common border.
     const u32 triangles = static_cast<u32>(mesh_.triangles.size());
     DisjointSets faces(triangles);
     std::vector<u32> sharp;
@@ -152,7 +153,7 @@ bool FeatureNetwork::merge_small_faces(double least_area) {
     for (std::size_t begin = 0, end = 0; begin < borders.size(); begin = end) {
         const Border& first = borders[begin];
         while (end < borders.size() && borders[end].face == first.face) ++end;
-        if (faces.find(first.face) != first.face || areas[first.face] != first.area) continue;  // it has grown
+        if (faces.find(first.face) != first.face || areas[first.face] != first.area) continue;  // the face has grown
         std::map<u32, double> lengths;
         for (std::size_t i = begin; i < end; ++i) {
             const u32 side = borders[i].half_edge, neighbour = faces.find(opposite_[side] / 3);
@@ -193,7 +194,7 @@ bool FeatureNetwork::turns(u32 vertex, const FeatureScale& scale) const {
     const Vec3& here = position(vertex);
     const auto [last, next] = line_neighbours(vertex);
     if (!(angle_between(here - position(last), position(next) - here) > limit)) return false;
-    // Below the shorter edge the reach changes nothing; the edges' own directions need one above 0.
+    // A reach up to the length of the shorter edge gives the directions of the two edges. It must be above 0.
     const double shorter = std::min((here - position(last)).norm(), (position(next) - here).norm());
     const double reach = std::max(scale.reach, shorter);
     bool is_closed = false;
@@ -214,7 +215,7 @@ void FeatureNetwork::classify(const FeatureScale& scale) {
 }
 
 void FeatureNetwork::find_singular() {
-    // An apex: the curvature round it does not grow with the disc, as that of a smooth tip does.
+    // Around an apex, the total curvature of a disc does not grow with its radius. Around a smooth tip it grows.
     constexpr double least_curvature = 0.5, largest_growth = 0.2, near = 3, far = 6;
     Array<double> defects(first_.size(), 0);
     Array<double> lengths;
@@ -245,8 +246,8 @@ void FeatureNetwork::find_singular() {
     std::vector<u32> disc;
     std::vector<u32> visited(first_.size(), none);
     u32 visit = 0;
-    // Ends early where the disc is refused anyway: in a part far finer than the median edge a disc holds thousands of
-    // vertices, and nearly every peak of noise has a higher one beside it.
+    // Stops as soon as the disc is rejected. Where triangles are far smaller than the median edge, a disc has thousands
+    // of vertices, and nearly every peak of noise has a higher peak beside it.
     const auto disc_around = [&](u32 centre, double radius, bool must_be_largest) {
         Disc found;
         disc.assign(1, centre);

@@ -2,8 +2,9 @@
 #pragma once
 /// The feature edges of the mesh that is decimated, at the scale of the largest error, and the classes of its vertices.
 ///
-/// Noise makes many edges sharp. A branch that ends freely within a few times the largest error, and a face enclosed by
-/// sharp edges that is as small, are roughness that the result may smooth; the edges between larger faces are features.
+/// Noise makes many edges sharp. Two patterns count as roughness, which the result may smooth. One is a branch with a
+/// free end that is shorter than a few times the largest error. The other is a face of that size which is enclosed by
+/// sharp edges. The sharp edges between larger faces are features.
 
 #include <span>
 #include <vector>
@@ -15,8 +16,8 @@ namespace scanmill::decimating {
 
 struct FeatureScale {
     double sharp_angle = 0, corner_angle = 0;  ///< radians
-    /// Branches with a free end that are shorter, faces with an area below its square, and turns of a line that are
-    /// gone within this distance on both sides are no features.
+    /// Length below which details are roughness. It limits the length of a branch with a free end, and the square root
+    /// of a face's area. A turn of a line is roughness if it vanishes when measured over this distance on both sides.
     double reach = 0;
 };
 
@@ -35,8 +36,8 @@ public:
     /// Number of the mesh's declared sharp edges that are not features at this scale.
     std::size_t ignored_declared() const { return ignored_declared_; }
 
-    /// Any half-edge from the vertex; on the boundary the first of its fan, counter-clockwise. half_edges::boundary for
-    /// a vertex without triangles.
+    /// A half-edge from the vertex. For a boundary vertex it is the first one of its fan, counter-clockwise. For a
+    /// vertex without triangles it is half_edges::boundary.
     u32 first(u32 vertex) const { return first_[vertex]; }
     /// Calls action(half-edge, other end) for every feature edge at the vertex, counter-clockwise. The half-edge starts
     /// at the vertex, except for the last one of an open fan, which ends there. Pre: the vertex has triangles.
@@ -50,10 +51,10 @@ public:
             half_edge = opposite_[last];
         } while (half_edge != half_edges::boundary && half_edge != first_[vertex]);
     }
-    /// Both neighbours on the feature line through a vertex. Pre: it has two feature edges.
+    /// Both neighbours on the feature line through a vertex. Pre: the vertex has two feature edges.
     std::array<u32, 2> line_neighbours(u32 vertex) const;
-    /// Follows the line from a vertex over its neighbour `next` to the first vertex for which `is_end` holds, calling
-    /// passed(vertex) for those between, which must have two feature edges.
+    /// Follows the line from `vertex` over its neighbour `next` to the first vertex for which `is_end` holds. Calls
+    /// passed(v) for every vertex v on the way. Pre: each vertex on the way has two feature edges.
     template <class IsEnd, class Passed>
     u32 follow_line(u32 vertex, u32 next, IsEnd&& is_end, Passed&& passed) const {
         while (!is_end(next)) {
@@ -79,7 +80,7 @@ private:
     std::span<const u32> opposite_;
     Array<u32> first_;
     std::vector<bool> features_;  ///< by half-edge
-    Array<u32> counts_;  ///< by vertex: feature edges at it
+    Array<u32> counts_;  ///< by vertex: number of its feature edges
     Array<VertexClass> classes_;
     std::size_t ignored_declared_ = 0;
 };

@@ -16,7 +16,7 @@ bool OriginalSurface::add_path(u32 from, u32 to, const Vec3& up, const SignedErr
     const Vec3 sideways = up.cross(along);
     struct End {
         u32 vertex;
-        double side;  ///< side of the plane: negative on the right
+        double side;  ///< proportional to the distance from the plane; negative on the right
     };
     const auto at = [&](u32 vertex) { return End{vertex, sideways.dot(position(vertex) - begin)}; };
     const auto crossing = [&](const End& right, const End& left) {
@@ -24,12 +24,13 @@ bool OriginalSurface::add_path(u32 from, u32 to, const Vec3& up, const SignedErr
         return Vec3(position(right.vertex) + share * (position(left.vertex) - position(right.vertex)));
     };
 
-    // The edge opposite to `from` by which the plane leaves its triangles; if several, the farthest towards `to`.
+    // The edge opposite to `from` through which the plane leaves the triangles at `from`. Of several such edges, the
+    // one crossed farthest towards `to`.
     u32 crossed = half_edges::boundary;
     double farthest = 0;
     u32 half_edge = features_.first(from);
     do {
-        const u32 edge = after(half_edge);  // from the right to the left, if the plane crosses it forwards
+        const u32 edge = after(half_edge);  // leads from right to left if the plane leaves here
         const End right = at(half_edges::start(mesh_, edge)), left = at(half_edges::end(mesh_, edge));
         if (right.vertex == to || left.vertex == to) return true;  // an edge of the original surface
         if (right.side < 0 && left.side >= 0) {

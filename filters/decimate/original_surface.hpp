@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Paths along the surface that is decimated: how far an edge between two of its vertices is from it.
+/// Paths on the original surface. They give the distance between a new edge and the original surface.
 
 #include "decimate/errors.hpp"
 #include "decimate/feature_network.hpp"
@@ -21,14 +21,15 @@ public:
     const FeatureNetwork& features() const { return features_; }
     const Vec3& position(u32 vertex) const { return mesh_.positions[vertex]; }
     std::span<const Vec3> positions() const { return mesh_.positions.span(); }
-    /// As self_intersections() counts it: vertices at one position are one.
+    /// Whether the triangles intersect. As in self_intersections(), vertices at one position count as one vertex.
     bool intersect(const Triangle& one, const Triangle& other) const {
         return triangles_intersect(positions(), lowest(one), lowest(other));
     }
 
-    /// Follows the surface from vertex `from` to vertex `to`, in the plane through both that contains `up`. Adds the
-    /// distances of the path to the straight segment: distance to a segment is convex, so it is largest at one of the
-    /// points where the path crosses an edge. False if the path leaves the limits or crosses a feature edge.
+    /// Follows the surface from vertex `from` to vertex `to`, in the plane through both vertices that contains `up`.
+    /// Adds the distances of the path to the straight segment. The distance to a segment is convex, so it is largest at
+    /// one of the points where the path crosses an edge. Returns false if the path exceeds the limits or crosses a
+    /// feature edge.
     bool add_path(u32 from, u32 to, const Vec3& up, const SignedErrors& limits, SignedErrors& errors) const;
 
 private:

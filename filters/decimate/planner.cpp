@@ -13,7 +13,8 @@ namespace scanmill::decimating {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-/// Cosine of the largest angle between the normals of neighbours: 170 degrees. Beyond it one is folded onto the other.
+/// Cosine of the largest angle between the normals of neighbours: 170 degrees. At larger angles, one triangle counts as
+/// folded onto the other.
 constexpr double fold_cosine = -0.984807753012208;
 
 /// Cosine of 0.1 degrees: the surface is flat where no normal differs more from the mean.
@@ -119,7 +120,8 @@ bool Planner::add_line_errors(u32 vertex) {
         all.add(off.norm(), off.dot(up) >= 0);
     };
     add(vertex);
-    // What accumulates is the distance between the old line and the new one, largest at the vertex.
+    // In mode accumulated, errors grow by the distance between the old line and the new one, which is largest at the
+    // vertex.
     const SignedErrors last = all;
     surface_.line_ends(vertex, add);
     line_ = mode_ == DecimateMode::direct ? all : last;
@@ -160,7 +162,8 @@ void Planner::plan_removal(u32 vertex, Edit& edit) {
     for (std::size_t i = 0; i < side_count_; ++i)
         if (!triangulate(sides_[i], removed, edit)) return;
     for (const u32 half_edge : star_) edit.old_rows.push_back(half_edge / 3);
-    // The triangulation avoids edges that exist; what is left is the last triangle of a tetrahedron.
+    // The triangulation avoids existing edges. A corner of a tetrahedron is the only remaining violation of the link
+    // condition.
     if (ring_.size() == 3 && !surface_.mesh().can_remove(vertex, edit.ring_triangles)) return;
     edit.is_possible = !exceeds_valence(edit) && !folds(edit) && !intersects(edit, 0);
 }
@@ -177,7 +180,7 @@ void Planner::plan_flip(u32 half_edge, Edit& edit) {
     if (!(after > before * (1 + 1e-9) + 1e-12)) return;
     if (!mesh.can_flip(half_edge) || mesh.valence(c) >= limits_.max_valence || mesh.valence(d) >= limits_.max_valence)
         return;
-    // The polygon a d b c: as the edge a b exists, the other diagonal is its only triangulation.
+    // Triangulates the polygon a d b c. The edge a b exists, so the other diagonal is the only choice.
     ring_ = {a, d, b, c};
     outside_ = {mesh.opposite(EditableMesh::after(other)), mesh.opposite(EditableMesh::before(other)),
                 mesh.opposite(EditableMesh::after(half_edge)), mesh.opposite(EditableMesh::before(half_edge))};
@@ -208,8 +211,8 @@ bool Planner::exceeds_valence(const Edit& edit) const {
     for (u32 i = 0; i < ring_.size(); ++i) {
         u32 triangles = 0;
         for (const auto& triangle : edit.ring_triangles) triangles += std::ranges::count(triangle, i);
-        // Inside the hole, a vertex has one edge less than triangles now, and had one, to the removed vertex. At both
-        // ends of an open ring the edge that closes it is inside too.
+        // A ring vertex has one new edge less than it has new triangles, and loses its edge to the removed vertex. At
+        // both ends of an open ring, the edge that closes the ring is new as well.
         const u32 edges = is_open && (i == 0 || i + 1 == ring_.size()) ? triangles : triangles - 1;
         if (edges > 1 && surface_.mesh().valence(ring_[i]) + edges - 1 > limits_.max_valence) return true;
     }

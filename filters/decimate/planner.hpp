@@ -7,7 +7,7 @@
 
 namespace scanmill::decimating {
 
-/// Reads the surface only, so several planners may work at the same time.
+/// Only reads the surface, so several planners may work at the same time.
 class Planner {
 public:
     Planner(const Surface& surface, const Limits& limits, DecimateMode mode)
@@ -17,29 +17,32 @@ public:
           direct_(surface, limits),
           accumulated_(surface, limits) {}
 
-    /// The removal of a vertex. It is possible if, in addition to the limits on errors and triangles, no edge is made
-    /// twice, no two neighbours are folded onto each other, and no triangle intersects one that the old ones did not.
+    /// Plans the removal of a vertex. Besides the limits on errors and triangles, a removal has three conditions. No
+    /// edge exists twice. No two neighbouring triangles are folded onto each other. No new triangle intersects a
+    /// triangle that the old ones did not intersect.
     void plan_removal(u32 vertex, Edit& edit);
-    /// The flip of an edge: with the same conditions, and if it raises the least angle of the two triangles.
+    /// Plans the flip of an edge. The conditions of plan_removal() apply, and the least angle of the two triangles must
+    /// grow.
     void plan_flip(u32 half_edge, Edit& edit);
 
-    /// Whether the new triangles intersect triangles that the old ones do not, among those of boxes changed at this
-    /// stamp or later.
+    /// Whether the new triangles intersect triangles that the old ones do not intersect. `stamp`: skips parts of the
+    /// mesh that did not change since then, as BoxTree::for_each_meeting() does.
     bool intersects(const Edit& edit, u32 stamp);
 
-    /// About the error of a vertex's removal, a length: the distance of the nearest ring vertex to the planes of the
-    /// triangles at the vertex, root mean square by area. Infinite for vertices that stay.
+    /// Estimates the error of removing a vertex, as a length. For a ring vertex, takes the root mean square of its
+    /// distances to the planes of the triangles at the vertex, weighted by area. The estimate is the least of these
+    /// values. Infinite for vertices that cannot be removed.
     double estimate(u32 vertex);
 
 private:
-    /// A part of the hole: the whole one, or one side of a feature line.
+    /// The whole hole, or its part on one side of a feature line.
     struct Side {
         std::vector<HoleCorner> corners;
         Vec3 up = Vec3::Zero();
         double angle_sine = 0;
         std::vector<u32> points;
         // For accumulated errors:
-        bool is_height_field = true;  ///< over the plane across `up`, which the overlay needs
+        bool is_height_field = true;  ///< no old triangle faces away from `up`
         std::vector<SignedErrors> old_errors;
         std::vector<OldEdge> old_edges;
         std::vector<u32> ring_triangles;
@@ -61,7 +64,7 @@ private:
     AccumulatedErrors accumulated_;
     HoleTriangulator triangulator_;
     std::vector<HoleTriangle> triangles_;
-    std::vector<u32> ring_, star_;  ///< vertices; half-edges from the vertex
+    std::vector<u32> ring_, star_;  ///< vertices of the ring; half-edges from the vertex to them
     std::vector<BoundingBox> boxes_;  ///< boxes of the planned triangles
     std::vector<u32> outside_;  ///< half-edges outside the hole's edges
     Side sides_[2];

@@ -10,18 +10,17 @@ SCANMILL_FILTER() {
         .summary("Removes vertices while the surface stays within a distance, and proves the distance.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 4")
         .ties(
-            "Of equal estimates the vertex with the lower number is removed first; of equally good triangulations of a "
-            "hole the first is taken.")
-        .not_finite("Refused, with their number and the first of them.")
+            "Among equal estimates, the vertex with the lower number is removed first. Among equally good "
+            "triangulations of a hole, the first is taken.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"class", "corner-normals", "error-outside", "error-inside"})
         .in<TriangleMesh>("mesh",
-                          "A manifold, closed or open, oriented consistently. Its sharp edges count beside those that "
-                          "are sharp by their angle.")
-        .in<PointCloud>(
-            "points",
-            "Data points that the result must be near to, besides the mesh's vertices: the scan, for points "
-            "that thinning or sculpting left off the mesh.",
-            optional)
+                          "A manifold, closed or open, oriented consistently. Its declared sharp edges are features, "
+                          "like the edges that are sharp by their angle.")
+        .in<PointCloud>("points",
+                        "Data points that the result must stay near, besides the mesh's vertices. Give the scan if "
+                        "thinning or sculpting left points off the mesh.",
+                        optional)
         .out<TriangleMesh>("mesh",
                            "Vertices of the input, with their columns and `class` (0 smooth, 1 crease, 2 corner, 3 "
                            "boundary); triangles with `corner-normals`, `error-outside` and `error-inside`; the sharp "
@@ -34,23 +33,24 @@ SCANMILL_FILTER() {
                 {{"direct", DecimateMode::direct,
                   "Errors are measured to the input mesh, and to the points if there are any."},
                  {"accumulated", DecimateMode::accumulated,
-                  "Two error bounds per triangle grow with every removal, as in the paper: more triangles are left."}},
-                "How the errors that decide are found; the certificate does not depend on it.")
-        .param("sharp-angle", &P::sharp_angle, "An edge is sharp if the normals of its triangles differ by more.",
-               at_least(20), at_most(75))
-        .param("corner-angle", &P::corner_angle, "A feature line that turns by more has a corner there.", at_least(0),
-               at_most(180))
+                  "As in the paper, two error bounds per triangle grow with every removal. More triangles are left "
+                  "than with `direct`."}},
+                "How the errors that limit removals are measured. The certificate does not depend on this choice.")
+        .param("sharp-angle", &P::sharp_angle,
+               "An edge is sharp if the normals of its triangles differ by more than this.", at_least(20), at_most(75))
+        .param("corner-angle", &P::corner_angle, "A vertex where a feature line turns by more than this is a corner.",
+               at_least(0), at_most(180))
         .param("normal-deviation", &P::normal_deviation,
                "Largest angle between the normal of a new triangle and the mean normal of those it replaces.",
                at_least(0), at_most(89))
         .param("min-angle", &P::min_angle,
-               "No new triangle has a smaller angle, unless one of those it replaces has; on flat faces 5 degrees "
-               "suffice. A larger one makes better triangles, and more of them.",
+               "Least angle of a new triangle, unless a replaced triangle has a smaller one; on flat faces 5 degrees "
+               "suffice. A larger value gives better-shaped triangles, but more of them.",
                at_least(0), at_most(30))
-        .param("max-valence", &P::max_valence, "Vertices with more edges are not removed, and none gets more.",
-               at_least(6), at_most(64))
+        .param("max-valence", &P::max_valence,
+               "A vertex with more edges than this is not removed, and no vertex gets more.", at_least(6), at_most(64))
         .param("target-triangles", &P::target_triangles,
-               "Removal ends with at most so many triangles, or earlier because of max-error; 0: no such limit.",
+               "Removal stops when at most this many triangles are left; max-error may stop it earlier. 0: no target.",
                at_least(0))
         .param("final-flips", &P::final_flips,
                "Whether edges are flipped, within the same limits, to raise the triangles' least angles.")
@@ -59,15 +59,18 @@ SCANMILL_FILTER() {
         .metric("flips", Unit::count, "Edges flipped.")
         .metric("hausdorff-lower", Unit::length, "Lower bound of the distance between the input and the result.",
                 smaller_is_better)
-        .metric("hausdorff-upper", Unit::length, "Upper bound; the filter fails if it exceeds max-error.", headline,
-                smaller_is_better)
+        .metric(
+            "hausdorff-upper", Unit::length,
+            "Upper bound of the distance between the input and the result; the filter fails if it exceeds max-error.",
+            headline, smaller_is_better)
         .metric("certified", Unit::boolean, "Whether the upper bound is proven to be within max-error: always 1.",
                 larger_is_better)
         .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.")
         .metric("corners", Unit::count, "Vertices of class corner.")
-        .metric("points-max", Unit::length, "Largest distance from a point at `points` to the result.",
+        .metric("points-max", Unit::length, "Largest distance from a point of the input `points` to the result.",
                 smaller_is_better)
-        .metric("points-beyond", Unit::count, "Points at `points` that are farther than max-error from the result.",
+        .metric("points-beyond", Unit::count,
+                "Number of points of the input `points` that are farther than max-error from the result.",
                 smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud* points = inputs.find<PointCloud>("points");

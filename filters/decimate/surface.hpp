@@ -13,7 +13,7 @@ namespace scanmill::decimating {
 
 class Surface {
 public:
-    /// Keeps references. `data`: points beside the vertices; assign() them before the first edit.
+    /// Keeps references. `data`: points beside the vertices. Call assign() for them before the first edit.
     Surface(const OriginalSurface& original, EditableMesh mesh, std::span<const Vec3> data);
 
     const OriginalSurface& original;
@@ -29,20 +29,21 @@ public:
         nexts_[number] = heads_[row];
         heads_[row] = number;
     }
-    /// Removed vertices inside smooth faces, and data points, that the triangle represents.
+    /// Calls action(number) for every point that the triangle represents: removed vertices inside smooth faces, and
+    /// data points.
     template <class Action>
     void for_each_point(u32 row, Action&& action) const {
         for (u32 number = heads_[row]; number != EditableMesh::none; number = nexts_[number]) action(number);
     }
-    /// Errors at the triangle's points, and along the paths at its edges when it was made.
+    /// Errors at the triangle's points and along the paths at its edges, computed when the triangle was made.
     SignedErrors errors(u32 row) const { return {errors_[row][0], errors_[row][1]}; }
 
     BoundingBox box_of(u32 row) const { return box_of(mesh_.triangle(row)); }
     BoundingBox box_of(const Triangle& triangle) const;
     const BoxTree& boxes() const { return boxes_; }
 
-    /// The vertices left at both ends of the feature edge through a removable vertex; calls passed(vertex) for the
-    /// removed ones between them. Pre: class crease or boundary.
+    /// The remaining vertices at both ends of the feature edge through a removable vertex. Calls passed(v) for every
+    /// removed vertex v on that edge. Pre: the class of `vertex` is crease or boundary.
     template <class Passed>
     std::array<u32, 2> line_ends(u32 vertex, Passed&& passed) const {
         const FeatureNetwork& features = original.features();
@@ -51,12 +52,13 @@ public:
         return {features.follow_line(vertex, one, is_left, passed),
                 features.follow_line(vertex, other, is_left, passed)};
     }
-    /// Whether the edge between two vertices represents a part of a feature line. Pre: it is an edge of the mesh.
+    /// Whether the edge of the half-edge represents a part of a feature line.
     bool is_feature(u32 half_edge) const;
 
-    /// Pre: planned on the mesh as it is. `stamp`: marks the changed boxes. Appends the new rows.
+    /// Applies the edit and appends the new rows to `new_rows`. `stamp`: marks the changed boxes. Pre: no triangle at
+    /// `edit.element` has changed since the planning.
     void apply(const Edit& edit, u32 stamp, std::vector<u32>& new_rows);
-    /// Builds the tree of boxes anew if most triangles are gone.
+    /// Rebuilds the tree of boxes if most triangles are gone.
     void tidy();
 
 private:
@@ -65,7 +67,7 @@ private:
     EditableMesh mesh_;
     std::span<const Vec3> data_;
     Array<u32> heads_;  ///< by row: its first point
-    Array<u32> nexts_;  ///< by point: the next one of the same row
+    Array<u32> nexts_;  ///< by point: the next point of the same row
     Array<std::array<float, 2>> errors_;  ///< by row: outside, inside; rounded up
     BoxTree boxes_;
 };

@@ -173,9 +173,9 @@ TEST(DecimateWarns, OfColumnsThatItDrops_AndKeepsThoseOfVertices) {
 TEST(DecimateWarns, OfATargetThatTheLimitsForbid) {
     DecimateParams params = within(0.01);
     params.target_triangles = 2;
-    EXPECT_THAT(warnings_of_decimate(gridded_cube(4), params),
-                ElementsAre("12 triangles are left, more than target-triangles, 2: max-error or another limit forbids "
-                            "further removals"));
+    EXPECT_THAT(
+        warnings_of_decimate(gridded_cube(4), params),
+        ElementsAre(AllOf(HasSubstr("12 triangles are left, but target-triangles is 2"), HasSubstr("forbids"))));
     params.target_triangles = 12;
     EXPECT_THAT(warnings_of_decimate(gridded_cube(4), params), IsEmpty());
 }
@@ -184,7 +184,7 @@ TEST(DecimateWarns, OfDuplicateVertices_WhichStayASeam) {
     const TriangleMesh left = grid(4, 4), right = shifted(grid(4, 4), Vec3(4, 0, 0));
     const TriangleMesh seam = both(left, right);
     EXPECT_THAT(warnings_of_decimate(seam, within(0.01)),
-                Contains("5 vertices have the position of another one; the mesh is open between them, and stays so"));
+                Contains(AllOf(HasSubstr("5 vertices have the position of another vertex"), HasSubstr("stays open"))));
     const DecimateResult result = decimated(seam, 0.01);
     EXPECT_EQ(topology(result.mesh).components, 2u);
     EXPECT_EQ(topology(result.mesh).boundary_loops, 2u);
