@@ -55,7 +55,8 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
         }
     });
 
-    // In input order, in which neighbours are mostly near each other, so that only the writes are scattered.
+    // Visits the cells in input order. Neighbours are mostly near each other in this order, so only the writes are
+    // scattered.
     sorted = {};
     result.neighbours.resize(neighbours.size());
     for_each_chunk(threads, neighbours.size(), chunk, [&](std::size_t begin, std::size_t end) {

@@ -33,14 +33,14 @@ DistinctRows distinct_rows(std::size_t count, std::span<const u32> duplicates) {
     return rows;
 }
 
-/// Marks the vertices in no cell, if any, in a column, with a warning. Returns their number.
+/// Warns of vertices that are in no cell, and marks them in a column. Returns their number.
 std::size_t mark_hidden(TetMesh& tets, Context& context) {
     const Array<u32> hidden = hidden_vertices(tets);
     if (hidden.empty()) return 0;
     tets.vertex_columns = with_hidden(tets.vertex_columns, tets.positions.size(), hidden, context);
     context.warn(
-        fmt::format("{} of {} points {} hidden by the weights of others and in no cell; the column "
-                    "'hidden' marks them; smaller weights hide fewer",
+        fmt::format("{} of {} points {} hidden by the weights of other points and in no cell; the column 'hidden' "
+                    "marks them. Smaller weights hide fewer points",
                     hidden.size(), tets.positions.size(), by_count(hidden.size(), "is", "are")));
     return hidden.size();
 }

@@ -97,8 +97,8 @@ void refuse_flat(std::span<const Vec3> positions, int dimension, double distance
     throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",
                 positions.size(), distance, symbol(frame.unit), shape,
                 distance > 0 ? ", less than their coordinates can express" : "")
-        .hint(distance > 0 && dimension == 0 ? "move the scan near the origin before it is written: so far away its "
-                                               "coordinates have lost their digits"
+        .hint(distance > 0 && dimension == 0 ? "move the scan near the origin before it is written; so far from the "
+                                               "origin, coordinates lose their last digits"
                                              : std::string(way_out));
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view hidden_name = "hidden", older = "-of-points", spacing_name = "spacing";
 
-/// Rows sorted by position, those of one position by row.
+/// Rows sorted by position, and by number at one position.
 Array<u32> rows_by_position(std::span<const Vec3> positions) {
     Array<u32> rows(positions.size());
     std::iota(rows.begin(), rows.end(), 0);
@@ -76,7 +76,8 @@ const Column& column_named(const PointCloud& cloud, const std::string& name) {
 }
 
 constexpr std::size_t chunk = 1 << 12;
-/// Largest share of the squared distance: at 1 a point may lie exactly on the border of its own power cell.
+/// Largest difference between the weights of two points, as a share of their squared distance. With 1, a point could
+/// lie exactly on the border of its own power cell.
 constexpr double most_of_distance = 0.9;
 
 double mean_distance(std::span<const Neighbour> neighbours) {
@@ -85,10 +86,10 @@ double mean_distance(std::span<const Neighbour> neighbours) {
     return sum / static_cast<double>(neighbours.size());
 }
 
-/// Per distinct point, the others that may limit its weight.
+/// For each distinct point, the other points that may limit its weight.
 using Pairs = std::vector<std::vector<u32>>;
 
-/// One round of lowering: every weight to what the present weights of the others allow. False when nothing changed.
+/// Lowers every weight to the value that the present weights of other points allow. Returns false if no weight changed.
 bool lower_once(std::span<const Vec3> points, const Pairs& pairs, const Array<double>& weights, Array<double>& lowered,
                 unsigned threads) {
     std::atomic<bool> changed = false;
@@ -117,7 +118,7 @@ PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params
             "`weights: spacing` computes the weights; the points' column 'spacing' is not read. Rename the column to "
             "use it");
     if (by_spacing && params.factor > largest_spacing_factor)
-        throw Error("with `weights: spacing` factor must be at most {}; it is {}", largest_spacing_factor,
+        throw Error("with `weights: spacing`, factor must be at most {}; it is {}", largest_spacing_factor,
                     params.factor)
             .hint("1 makes a weight the square of the local spacing; a column may hold larger weights");
     PointWeights points;
@@ -164,7 +165,7 @@ Array<double> spacing_weights(std::span<const Vec3> positions, double factor, Co
             const u32 point = static_cast<u32>(i);
             const double spacing = mean_distance(tree.nearest(point, spacing_neighbours, buffer));
             weights[point] = factor * (spacing * spacing);
-            // Points farther away do not limit it, because no weight is below 0.
+            // Points farther away do not limit this weight, because no weight is below 0.
             for (const Neighbour& other : tree.within(point, weights[point] / most_of_distance, buffer))
                 pairs[point].push_back(other.index);
         }

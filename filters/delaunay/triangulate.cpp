@@ -52,20 +52,21 @@ using NumberedCellBase = CGAL::Triangulation_cell_base_with_info_3<CellNumber, K
 template <class Base>
 using RowVertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel, Base>;
 
-// Without weights.
+// Types for triangulations without weights.
 using VertexBase = RowVertexBase<CGAL::Triangulation_vertex_base_3<Kernel>>;
 using CellBase = NumberedCellBase<CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 template <class Concurrency>
 using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, Concurrency>;
-/// A grid over space: threads lock its boxes before they change cells there. A failed attempt to lock returns at once;
-/// CGAL's default would spin, for a whole time slice when the owner of the lock waits for a core.
+/// A spatial grid. A thread locks the boxes of the grid in which it changes cells. A failed attempt to lock returns at
+/// once. CGAL's default would spin instead, for a whole time slice if the owner of the lock waits for a core.
 using Locks = CGAL::Spatial_lock_grid_3<CGAL::Tag_non_blocking>;
 using SharedTriangulation =
     CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Parallel_tag>, CGAL::Default, Locks>;
-/// For one thread: synchronisation costs time.
+/// For one thread, without the cost of synchronisation.
 using LoneTriangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Sequential_tag>>;
 
-// With weights. Points that become hidden are dropped: the hidden points are those in no cell in the end.
+// Types for triangulations with weights. CGAL drops points that become hidden, so the hidden points are those in no
+// cell at the end.
 using WeightedCellBase = CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
                                                                  CGAL::Discard_hidden_points>;
 using WeightedCell = NumberedCellBase<WeightedCellBase>;
@@ -93,8 +94,8 @@ std::vector<PointRow> insertion_order(std::span<const Vec3> positions, unsigned 
     return points;
 }
 
-/// With fewer points a second thread does not pay. With more, the first `serial_points` are inserted by one thread: as
-/// long as there are few cells, every insertion touches most of them.
+/// With fewer points, a second thread does not save time. With more, one thread inserts the first `serial_points`,
+/// because insertions touch most of the cells as long as there are few.
 constexpr std::size_t least_for_threads = 10'000, serial_points = 1000;
 constexpr int lock_boxes_per_axis = 64;
 
@@ -103,7 +104,7 @@ void wait_after(int failures) {
     constexpr int short_waits = 30;
     if (failures < short_waits)
         for (int i = 0; i < 256 << std::min(failures, 6); ++i) std::atomic_signal_fence(std::memory_order_seq_cst);
-    else  // that thread may itself be waiting for a core, perhaps for this one
+    else  // the other thread may itself be waiting for a core, perhaps for this one
         std::this_thread::sleep_for(std::chrono::microseconds(50));
 }
 
@@ -122,7 +123,7 @@ public:
     /// Returns the rows whose position is exactly that of an earlier one, ascending.
     Array<u32> run() {
         if constexpr (is_shared) {
-            // Locking needs cells, and the first points of a scan may all lie in one plane.
+            // Locking needs cells. There are none while all inserted points of a scan lie in one plane.
             std::size_t begin = 0;
             do {
                 const std::size_t end = std::min(begin + serial_points, points_.size());
@@ -146,7 +147,7 @@ private:
         });
     }
 
-    /// All points from `begin` on.
+    /// Inserts all points from `begin` on.
     void insert_in_parallel(std::size_t begin)
         requires is_shared
     {
@@ -161,7 +162,7 @@ private:
         triangulation_.set_lock_data_structure(nullptr);
     }
 
-    /// `last` is the vertex of the last point that this thread inserted: the next one is likely to be near it.
+    /// `last`: the vertex of the last point that this thread inserted. The next point is likely to be near it.
     void insert(std::span<const PointRow> points, Vertex& last) try {
         std::vector<u32> duplicates;
         for (const auto& [point, row] : points) {
@@ -179,7 +180,7 @@ private:
         throw;
     }
 
-    /// False, without any change, when another thread has locked a box there.
+    /// Returns false, without any change, if another thread has locked a box there.
     bool try_insert(const Kernel::Point_3& point, Vertex& last) {
         if constexpr (is_shared) {
             if (triangulation_.is_parallel()) return try_insert_locked(point, last);
@@ -200,7 +201,7 @@ private:
         return locked;
     }
 
-    /// Lowers `value` to `candidate` if that is smaller. Returns the old value.
+    /// Lowers `value` to `candidate` if `candidate` is smaller. Returns the old value.
     static u32 exchange_with_smaller(u32& value, u32 candidate) {
         const std::atomic_ref shared(value);
         u32 old = shared.load(std::memory_order_relaxed);
@@ -221,7 +222,8 @@ private:
     std::span<const PointRow> points_;
     Context& context_;
     Vertex last_;
-    /// An insertion ended with an exception. Its cells are half changed, and stay locked so that no thread enters them.
+    /// Whether an insertion ended with an exception. Its cells are inconsistent and stay locked, so that no thread
+    /// enters them.
     std::atomic<bool> broken_ = false;
     std::mutex mutex_;
     std::size_t done_ = 0;
@@ -245,7 +247,7 @@ void insert_weighted(Weighted& triangulation, std::span<const PointRow> points, 
     }
 }
 
-/// The finite cells in container order, and a handle to every `chunk`-th of them.
+/// Number of finite cells, and handles to every `chunk`-th of them in container order.
 template <class Triangulation>
 struct NumberedCells {
     static constexpr std::size_t chunk = 1 << 13;
@@ -280,7 +282,7 @@ void prefetch_round(Cell& cell) {
     }
 }
 
-/// Fills raw.cells and raw.neighbours. Pre: of dimension 3.
+/// Fills raw.cells and raw.neighbours. Pre: the triangulation has dimension 3.
 template <class Triangulation>
 void fill_cells(Triangulation& triangulation, std::size_t points, unsigned threads, RawTriangulation& raw) {
     const NumberedCells<Triangulation> cells = number_cells(triangulation);
@@ -329,7 +331,7 @@ RawTriangulation triangulate(std::span<const Vec3> positions, Context& context) 
     const bool is_shared = context.threads() > 1 && positions.size() >= least_for_threads;
     if (!is_shared) return triangulate_in<LoneTriangulation>(positions, context);
     RawTriangulation raw = triangulate_in<SharedTriangulation>(positions, context);
-    // The allocator of CGAL's concurrent containers would keep their memory.
+    // Frees the memory that the allocator of CGAL's concurrent containers would otherwise keep.
     ::scalable_allocation_command(TBBMALLOC_CLEAN_ALL_BUFFERS, nullptr);
     return raw;
 }

@@ -66,7 +66,7 @@ TEST(DelaunayWeights, AColumnOfSeveralNumbers_IsRefused) {
 TEST(DelaunayWeights, AFactorOutOfRange_IsRefused) {
     const PointCloud cloud = with_one_weight(1);
     EXPECT_THAT(weights_refusal(cloud, weighted_by("spacing", 4.5)),
-                HasSubstr("with `weights: spacing` factor must be at most 4; it is 4.5"));
+                HasSubstr("with `weights: spacing`, factor must be at most 4; it is 4.5"));
     EXPECT_EQ(weights_refusal(cloud, weighted_by("w", 4.5)), "accepted");
     for (double factor : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         EXPECT_THAT(weights_refusal(cloud, weighted_by("w", factor)),
