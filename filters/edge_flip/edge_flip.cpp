@@ -21,22 +21,22 @@ namespace {
 
 using Criterion = EdgeFlipParams::Criterion;
 
-constexpr double least_gain = 1e-9;  // in radians, or of the length
+constexpr double least_gain = 1e-9;  // in radians, or as a share of the length
 constexpr double straight = 1e-6;  // radians below π at which two angles form a straight line
 /// Ratio of a triangle's height to its longest edge below which it has no normal (as in facet_normals.hpp).
 constexpr double no_height = 1e-9;
 /// Tolerances for rounding in planes: cosines of dihedral deviations, and distances as shares of lengths.
 constexpr double cosine_rounding = 1e-12, distance_rounding = 1e-9;
 
-/// The direction of an angle in [0, π]: ratios of its cosine and sine.
+/// An angle in [0, π], given by its cosine and sine, both times the same positive factor.
 struct Direction {
     double cosine, sine;
 };
 /// Pre: the angles differ by less than π.
 bool is_less(const Direction& a, const Direction& b) { return a.cosine * b.sine > a.sine * b.cosine; }
 
-/// The least angle of the triangle with the edges `one` and `two` from one of its corners. All three angles have the
-/// same cross product, so the least is the one with the largest dot product.
+/// The least angle of a triangle. `one` and `two`: the edges from one of its corners. `normal`: their cross product. It
+/// is equally long at all three corners, so the least angle has the largest dot product.
 Direction least_angle(const Vec3& one, const Vec3& two, const Vec3& normal) {
     const double dot = one.dot(two);
     return {std::max({dot, one.squaredNorm() - dot, two.squaredNorm() - dot}), normal.norm()};
@@ -70,7 +70,7 @@ double squared_distance(const Vec3& a, const Vec3& u, const Vec3& c, const Vec3&
 /// Two triangles at an edge, (a, b, c) and (b, a, d), and those at the other diagonal, (c, a, d) and (d, b, c).
 struct Quadrilateral {
     Vec3 a, ab, ac, ad, bc, bd, cd;
-    Vec3 abc, bad, cad, dbc;  ///< normals, twice the areas long
+    Vec3 abc, bad, cad, dbc;  ///< normals, as long as twice the areas
 
     Quadrilateral(const Vec3& a_, const Vec3& b, const Vec3& c, const Vec3& d)
         : a(a_),
@@ -106,7 +106,7 @@ struct Quadrilateral {
     }
 };
 
-/// Zero without area. `longest` is the squared length of the longest edge.
+/// Zero for a triangle without area. `longest`: the squared length of its longest edge.
 Vec3 unit_normal(const Vec3& normal, double longest) {
     const double length = normal.norm();
     return length > no_height * longest ? Vec3(normal / length) : Vec3::Zero();
@@ -141,7 +141,7 @@ public:
             if (h < mesh_.opposite(h)) push(h);
         do {
             empty_queue(context);
-            // A flip also changes the rules for edges that are not at its triangles.
+            // A flip can also permit flips of edges that are not at its triangles.
             left_ = {};
             for (u32 h = 0; h < half_edges(); ++h) {
                 if (h % check_interval == 0) context.check_cancelled();
@@ -222,7 +222,7 @@ private:
         if (other == half_edges::boundary) return Decision::stays;
         const u32 c = mesh_.apex(h), d = mesh_.apex(other);
         const Quadrilateral quad(positions_[mesh_.start(h)], positions_[mesh_.end(h)], positions_[c], positions_[d]);
-        // The criterion first: it rejects most edges.
+        // Checks the criterion first, because it rejects most edges.
         if (!(criterion_ == Criterion::delaunay ? quad.gains_angle() : quad.gets_shorter())) return Decision::stays;
         if (criterion_ == Criterion::paper ? quad.cad.dot(quad.dbc) >= 0 : !quad.is_convex()) return Decision::stays;
         if (flags_[h] & sharp) return Decision::sharp;
@@ -267,7 +267,7 @@ private:
         flips_.push_back({mesh_.start(h), mesh_.end(h), mesh_.apex(h), mesh_.apex(other)});
         const u32 h1 = EditableMesh::after(h), h2 = EditableMesh::before(h);
         const u32 o1 = EditableMesh::after(other), o2 = EditableMesh::before(other);
-        if (has_sharp_) {  // the outer edges move on by one half-edge
+        if (has_sharp_) {  // each outer edge moves to the next half-edge
             const u8 bc = flags_[h1] & sharp, ca = flags_[h2] & sharp, ad = flags_[o1] & sharp, db = flags_[o2] & sharp;
             const auto set = [&](u32 edge, u8 flag) {
                 flags_[edge] = static_cast<u8>((flags_[edge] & pending) | flag);
@@ -295,10 +295,10 @@ private:
     Criterion criterion_;
     double keep_cosine_, deviation_, squared_max_edge_ = std::numeric_limits<double>::infinity();
     bool has_sharp_ = false;
-    /// By half-edge: whether its edge is sharp; whether it is in the queue. A flip gives some half-edges to other
-    /// edges; those are in the queue from then on, too.
+    /// By half-edge: the bits `sharp` (its edge is sharp) and `pending` (it is in the queue). A flip assigns some
+    /// half-edges to other edges. A half-edge in the queue then represents its new edge.
     std::vector<u8> flags_;
-    /// A ring: every half-edge at most once.
+    /// Ring buffer; contains every half-edge at most once.
     Array<u32> queue_;
     std::size_t queue_begin_ = 0, queued_ = 0;
     double progress_ = 0;
@@ -306,7 +306,7 @@ private:
     BlockedEdges left_;
 };
 
-/// Number of vertices in triangles that lie at the position of an earlier one.
+/// Number of vertices of triangles that lie at the position of an earlier one.
 std::size_t repeated_positions(const TriangleMesh& mesh) {
     const std::size_t slots = std::bit_ceil(2 * mesh.positions.size() + 1);
     constexpr u32 empty = ~u32(0);
@@ -352,12 +352,13 @@ void warn_of_left(const BlockedEdges& left, const EdgeFlipParams& params, Contex
         if (edges > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", edges, reason);
     };
     add(left.sharp, "sharp");
-    add(left.connected, "whose other diagonal is an edge already");
-    add(left.folding, fmt::format("where the surface would fold or bend by more than {}", params.keep_angle.text()));
+    add(left.connected, "with the other diagonal in use as an edge");
+    add(left.folding, fmt::format("where triangles would fold, or normals of neighbours would differ by more than {}",
+                                  params.keep_angle.text()));
     add(left.deviating,
         fmt::format("where the surface would move by more than {} of the shorter diagonal", params.deviation.text()));
-    add(left.too_long, "whose other diagonal is not shorter than max-edge");
-    context.warn(fmt::format("{} not flipped although the criterion asks for it: {}",
+    add(left.too_long, "with the other diagonal not shorter than max-edge");
+    context.warn(fmt::format("{} not flipped although the criterion is fulfilled: {}",
                              count_text(left.total(), "edge is", "edges are"), reasons));
 }
 
@@ -377,7 +378,7 @@ EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params,
     result.flips = flipping.flips();
 
     if (const std::size_t repeats = repeated_positions(mesh); repeats > 0)
-        context.warn(fmt::format("{} the position of another one; the mesh is open between them, and stays so",
+        context.warn(fmt::format("{} the position of another vertex; the mesh is open there and stays open",
                                  count_text(repeats, "vertex has", "vertices have")));
     warn_of_dropped(mesh.face_columns, "face columns", "flips replace triangles", context);
     warn_of_dropped(mesh.edge_columns, "edge columns", "flips replace edges", context);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Edge flipping: two triangles at an edge are replaced by the two at the other diagonal of their quadrilateral where
-/// that makes better triangles and leaves the surface where it is.
+/// Edge flipping: replaces the two triangles at an edge by the two at the other diagonal of their quadrilateral. An
+/// edge is flipped where this improves the triangles and hardly moves the surface.
 ///
 /// Source: Sangveraphunsiri, Srirakulchai 2006, section 4, for the criteria `shorter` and `paper`; Lawson 1977,
-/// "Software for C1 surface interpolation", for the greatest least angle and its limit, the Delaunay triangulation.
+/// "Software for C1 surface interpolation", for the criterion `delaunay`.
 
 #include <optional>
 
@@ -16,16 +16,19 @@ namespace scanmill {
 
 struct EdgeFlipParams {
     enum class Criterion {
-        delaunay,  ///< the least of the six angles grows by more than 1e-9 radians
-        shorter,   ///< the other diagonal is shorter, by more than a billionth
-        paper  ///< it is shorter and the normals of the new triangles are more than 90 degrees apart: makes folds
+        delaunay,  ///< the least of the six angles of the two triangles grows by more than 1e-9 radians
+        shorter,   ///< the other diagonal is shorter than the edge by more than a billionth
+        /// The other diagonal is shorter, and the normals of the new triangles are more than 90 degrees apart. This
+        /// makes folds.
+        paper
     };
     Criterion criterion = Criterion::delaunay;
-    /// A flip may leave a dihedral deviation up to this, or up to the largest one that was there. 0 to 60 degrees.
+    /// Largest dihedral deviation after a flip; a larger one is allowed if it was there before the flip. 0 to 60
+    /// degrees.
     Angle keep_angle = Angle::degrees(20);
     /// Largest distance between the two diagonals, as a share of the shorter one; 0 or more.
     Ratio deviation = Ratio::percent(10);
-    /// New edges are shorter than this; above 0.
+    /// New edges are shorter than this; above 0. Absent: any length.
     std::optional<Length> max_edge;
 };
 
@@ -38,11 +41,11 @@ struct EdgeFlip {
 
 /// Edges that fulfil the criterion and were not flipped, each counted once, by the first reason in this order.
 struct BlockedEdges {
-    std::size_t sharp = 0;      ///< they are sharp edges of the mesh
-    std::size_t connected = 0;  ///< the other diagonal is an edge already
-    std::size_t folding = 0;    ///< the new triangles would fold, or exceed keep_angle
+    std::size_t sharp = 0;  ///< the edge is a sharp edge of the mesh
+    std::size_t connected = 0;  ///< the other diagonal already is an edge
+    std::size_t folding = 0;  ///< the new triangles would fold, or exceed keep_angle
     std::size_t deviating = 0;  ///< the diagonals are farther apart than `deviation` allows
-    std::size_t too_long = 0;   ///< the other diagonal is not shorter than max_edge
+    std::size_t too_long = 0;  ///< the other diagonal is not shorter than max_edge
 
     std::size_t total() const { return sharp + connected + folding + deviating + too_long; }
     bool operator==(const BlockedEdges&) const = default;
@@ -50,12 +53,12 @@ struct BlockedEdges {
 
 struct EdgeFlipResult {
     /// The vertices with their columns, the sharp edges and the frame are the input's. Triangles that no flip changed
-    /// keep their row. Without face columns and edge columns, with a warning.
+    /// keep their row. Face columns and edge columns are dropped, with a warning.
     TriangleMesh mesh;
-    /// In order.
+    /// In the order in which they were made.
     Array<EdgeFlip> flips;
     BlockedEdges left;
-    /// The least angle of all triangles, in radians; 0 with a triangle of three collinear vertices.
+    /// The least angle of all triangles, in radians; 0 if the vertices of a triangle are collinear.
     double min_angle_before = 0, min_angle_after = 0;
 };
 
@@ -67,29 +70,31 @@ struct EdgeFlipResult {
 /// 3. the two triangles, unfolded into a plane, form a convex quadrilateral: their angles at each end of the edge sum
 ///    to less than π - 1e-6 (otherwise the other diagonal is outside, and the edge does not count as blocked);
 /// 4. the criterion is fulfilled;
-/// 5. the normals of the new triangles are less than 90° from each other and from the sum of the old ones, weighted by
-///    area; and the largest dihedral deviation at the five edges of the two triangles is at most `keep_angle`, or at
-///    most what it was before;
-/// 6. the two diagonals, as segments, are at most `deviation` times the shorter one apart;
+/// 5. the new triangles do not fold: their normals are less than 90° from each other, and from the sum of the old
+///    normals weighted by area. The largest dihedral deviation at the five edges of the two triangles is at most
+///    `keep_angle`, or not larger than before;
+/// 6. the distance between the two diagonals, as segments, is at most `deviation` times the length of the shorter one;
 /// 7. the other diagonal is shorter than `max_edge`.
-/// The criterion `paper` has the rules 1, 2, 4 and 7 only: the paper has no others, and with 3 or 6 it flips nothing.
+/// The criterion `paper` uses the rules 1, 2, 4 and 7 only. The paper has no other rules, and with 3 or 6 it would flip
+/// nothing.
 ///
-/// A triangle whose height is below a billionth of its longest edge has no normal. Its longest edge is examined first;
-/// for rule 5 it has the normal of the other triangle there. Other edges are examined in the order of the triangles,
-/// and again when a triangle at them changed, first in, first out; when none is left, all of them once more.
+/// A triangle has no normal if its height is below a billionth of its longest edge. For rule 5, it takes the normal of
+/// the other triangle at its longest edge. Edges are examined first in, first out: the longest edges of such triangles
+/// first, then all edges in the order of the triangles. An edge is examined again after a triangle at it changed. When
+/// no edge is waiting, all edges are examined once more; the filter ends if none of them can be flipped.
 ///
-/// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented
-///       consistently; one fan of triangles, open or closed, at a vertex; no triangle with a repeated vertex. Throws
-///       Error naming the first offender otherwise, for sharp edges that no triangle has, and for parameters out of
-///       range.
-///       Vertices at one position are different vertices: the mesh is open between them, which a warning counts.
-/// Post: same vertices, edges, triangles, boundary and Euler characteristic. A second run flips nothing. With
-///       `delaunay` the sorted list of all angles grows with every flip, in lexicographic order, and with the others
-///       the sum of all edge lengths falls: so the flips end. In a plane mesh, `delaunay` makes a Delaunay
-///       triangulation: no vertex is inside the circumcircle of a triangle, within these tolerances.
-///       Ties: an edge with an equal diagonal stays. Deterministic: the same bytes on every machine.
-/// Cost: in practice linear, 60 bytes per triangle beside the result and 16 per flip; at worst the square of the number
-///       of edges in time.
+/// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented consistently; one fan of
+///       triangles, open or closed, at a vertex; no triangle with a repeated vertex. Throws Error naming the first
+///       offender otherwise. Also throws for sharp edges that no triangle has, and for parameters out of range.
+///       Vertices at one position are different vertices, and the mesh is open between them. A warning gives their
+///       number.
+/// Post: the vertices and the boundary stay, and so do the numbers of edges and triangles. A second run flips nothing.
+///       With `delaunay`, every flip makes the sorted list of all angles larger in lexicographic order. With the other
+///       criteria, every flip makes the sum of all edge lengths smaller. So the flips end. In a plane mesh, `delaunay`
+///       makes a Delaunay triangulation: no vertex is inside the circumcircle of a triangle, within these tolerances.
+///       Ties: an edge stays if the other diagonal is equally good. Deterministic: the same bytes on every machine.
+/// Cost: linear time in practice; at worst, quadratic in the number of edges. 60 bytes per triangle beside the result,
+///       and 16 per flip.
 /// Metrics: `flips`, `min-angle-before`, `min-angle-after`, `left`. Warns of edges that are left, by reason, and of
 /// columns that are dropped.
 EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params, Context& context);

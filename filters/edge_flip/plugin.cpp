@@ -7,7 +7,7 @@ using namespace scanmill;
 SCANMILL_FILTER() {
     using P = EdgeFlipParams;
     return Declare<P>("edge-flip", 1)
-        .summary("Flips edges of a mesh where that makes better triangles and leaves the surface where it is.")
+        .summary("Flips edges of a mesh where this improves the triangles and hardly moves the surface.")
         .source("Sangveraphunsiri, Srirakulchai 2006, section 4; Lawson 1977 for the Delaunay criterion")
         .ties("An edge stays if the other diagonal is equally good, to 1e-9.")
         .not_finite("Refused; the message gives their number and the first one.")
@@ -17,16 +17,15 @@ SCANMILL_FILTER() {
         .out<TriangleMesh>("mesh",
                            "The same vertices with their columns, and the same sharp edges; without face and edge "
                            "columns.")
-        .choice(
-            "criterion", &P::criterion,
-            {{"delaunay", P::Criterion::delaunay, "The least angle of the two triangles grows."},
-             {"shorter", P::Criterion::shorter, "The other diagonal is shorter."},
-             {"paper", P::Criterion::paper,
-              "The paper's words taken literally: the other diagonal is shorter and the normals of the new triangles "
-              "are more than 90° apart. Makes folds; `keep-angle` and `deviation` have no effect."}},
-            "When an edge is flipped.")
+        .choice("criterion", &P::criterion,
+                {{"delaunay", P::Criterion::delaunay, "The least angle of the two triangles grows."},
+                 {"shorter", P::Criterion::shorter, "The other diagonal is shorter."},
+                 {"paper", P::Criterion::paper,
+                  "The paper's words taken literally: the other diagonal is shorter, and the normals of the new "
+                  "triangles are more than 90° apart. This makes folds; `keep-angle` and `deviation` have no effect."}},
+                "The condition for flipping an edge.")
         .param("keep-angle", &P::keep_angle,
-               "A flip may leave an angle between the normals of neighbours up to this, or up to the largest one there "
+               "Largest angle between the normals of neighbours after a flip; a larger one is allowed if it was there "
                "before.",
                at_least(0), at_most(60))
         .param(
@@ -34,9 +33,10 @@ SCANMILL_FILTER() {
             "Largest distance between the two diagonals, as a share of the shorter one: how far the surface may move.",
             at_least(0))
         .param("max-edge", &P::max_edge, "New edges are shorter than this.", above(0))
-        .metric("flips", Unit::count, "Flips made.", headline)
-        .metric("min-angle-before", Unit::angle, "Least angle of all triangles before.")
-        .metric("min-angle-after", Unit::angle, "Least angle of all triangles after.", headline, larger_is_better)
+        .metric("flips", Unit::count, "Number of edges that were flipped.", headline)
+        .metric("min-angle-before", Unit::angle, "Least angle of all triangles before the flips.")
+        .metric("min-angle-after", Unit::angle, "Least angle of all triangles after the flips.", headline,
+                larger_is_better)
         .metric("left", Unit::count,
                 "Edges that fulfil the criterion and were not flipped, because they are sharp or another limit forbids "
                 "it; a warning gives the reasons.")

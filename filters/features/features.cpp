@@ -11,7 +11,7 @@ namespace {
 
 void warn_of_short_creases(const FeatureCounts& counts, const FeatureParams& params, Context& context) {
     if (counts.dropped > 0)
-        context.warn(fmt::format("{} shorter than {:.6g} u: left out", count_text(counts.dropped, "crease", "creases"),
+        context.warn(fmt::format("left out {} shorter than {:.6g} u", count_text(counts.dropped, "crease", "creases"),
                                  params.min_length.value()));
 }
 

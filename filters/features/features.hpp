@@ -8,9 +8,9 @@
 
 namespace scanmill {
 
-/// find_features() with the threads and the cancellation of this run. Warns of triangles without area, of loops that
-/// were classified by their length, and of creases that were left out. Throws Error for a mesh without triangles, and
-/// as find_features(). Metrics: those of FeatureCounts, and `noise`.
+/// Runs find_features() with the threads and the cancellation of `context`. Warns of triangles without area, of loops
+/// that were classified by their length, and of creases that were left out. Throws Error for a mesh without triangles,
+/// and as find_features() does. Metrics: those of FeatureCounts, and `noise`.
 FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Context& context);
 
 }  // namespace scanmill

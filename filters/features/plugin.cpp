@@ -10,23 +10,24 @@ SCANMILL_FILTER() {
         .summary("Finds the boundaries and sharp edges of a mesh, and the corners where such lines meet or turn.")
         .source("Wang 2006, chapter 4, for loops, holes and sharp edges")
         .ties(
-            "An angle within 1e-9 rad of a limit is not above it; of equally long loops the one that begins at the "
+            "An angle within 1e-9 rad of a limit is not above it. Among equally long loops, the one that begins at the "
             "lower position (x, then y, then z) is the outer boundary.")
-        .not_finite("Refused at a vertex of a triangle; the first is named.")
-        .in<TriangleMesh>(
-            "mesh", "At most two triangles at an edge, oriented consistently; its own sharp edges are creases, too.")
+        .not_finite("Refused at vertices of triangles; the message names the first one.")
+        .in<TriangleMesh>("mesh",
+                          "At most two triangles at an edge, oriented consistently. Sharp edges that the mesh declares "
+                          "are creases, too.")
         .out<FeatureGraph>("features", "Polylines with the unit normals on both sides, and corners.")
-        .param("sharp-angle", &P::sharp_angle, "Edges whose triangles' normals differ by more than this are sharp.",
-               at_least(0), at_most(180))
+        .param("sharp-angle", &P::sharp_angle,
+               "An edge is sharp if the normals of its triangles differ by more than this.", at_least(0), at_most(180))
         .param("corner-angle", &P::corner_angle, "A line has a corner where it turns by more than this.", at_least(0),
                at_most(180))
         .param("min-length", &P::min_length, "Creases shorter than this, from corner to corner, are left out.",
                at_least(0))
-        .param(
-            "noise", &P::noise,
-            "Standard deviation of the vertices' distances from the surface. Normals of triangles that are too small "
-            "for it are replaced by those of neighbourhoods; `auto` estimates it, 0 replaces none.",
-            at_least(0), word("auto"))
+        .param("noise", &P::noise,
+               "Standard deviation of the vertices' distances from the true surface. Triangles that are too small for "
+               "this noise take the normal of a neighbourhood. `auto` estimates the noise; with 0, all triangles keep "
+               "their normals.",
+               at_least(0), word("auto"))
         .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.", headline)
         .metric("holes", Unit::count, "Boundary loops around a hole in the mesh.", headline)
         .metric("boundaries", Unit::count, "Boundary loops around a component of the mesh.", headline)
@@ -36,7 +37,8 @@ SCANMILL_FILTER() {
         .metric("dropped", Unit::count, "Creases left out because they are shorter than min-length.")
         .metric("without-area", Unit::count, "Triangles without area; they take the normal of a neighbour.",
                 smaller_is_better)
-        .metric("noise", Unit::length, "Standard deviation of the vertices' distances from the surface.")
+        .metric("noise", Unit::length,
+                "Standard deviation of the vertices' distances from the true surface, given or estimated.")
         .metric("unreliable", Unit::count,
                 "Triangles too small for the noise; they take the normal of a neighbourhood.")
         .run([](const Inputs& inputs, const P& params, Context& context) {

@@ -63,7 +63,7 @@ TEST(EdgeFlipWarns, OfVerticesAtOnePosition_UnusedOnesExcepted) {
     EXPECT_THAT(warnings_of_flip(mesh), IsEmpty()) << "vertices 4 to 6 are in no triangle";
     mesh.triangles = {{0, 1, 2}, {5, 3, 6}};
     EXPECT_THAT(warnings_of_flip(mesh),
-                ElementsAre("1 vertex has the position of another one; the mesh is open between them, and stays so"));
+                ElementsAre(AllOf(HasSubstr("1 vertex has the position of another"), HasSubstr("stays open"))));
     mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, -0.0}}, {{0, 1, 2}, {2, 1, 3}});
     EXPECT_THAT(warnings_of_flip(mesh), ElementsAre(HasSubstr("1 vertex has"))) << "-0 is 0";
 }
