@@ -26,13 +26,15 @@ namespace scanmill {
 
 namespace {
 
-/// Rounds that fill the cells around edges with four triangles.
+/// Largest number of attempts to remove edges with four triangles, by labelling the cells around them inside.
 constexpr int most_attempts = 20;
 
-/// Cost of a suggested triangle as a share of its area: a fair triangulation is larger than the flattest one.
+/// Cost of a suggested triangle as a share of its area. It is low because a fair triangulation has more area than the
+/// flattest one.
 constexpr double cost_of_suggested = 0.1;
 
-/// The area of the mesh's triangles that a cell is behind and in front of, and their component.
+/// Areas of the mesh's triangles that claim a cell for the inside and for the outside, and the component of these
+/// triangles.
 struct Claim {
     double inside = 0, outside = 0;
     u32 component = 0;
@@ -92,7 +94,7 @@ private:
         return std::abs((positions_[b] - from).cross(positions_[c] - from).dot(positions_[d] - from)) / 6;
     }
 
-    /// Cost of a facet on the boundary.
+    /// Cost of a boundary that contains the facet.
     double cost(const Triangle& corners) const {
         const bool is_suggested =
             std::ranges::binary_search(suggested_, smallest_first(corners)) ||
@@ -137,7 +139,7 @@ private:
             for (Claim& claim : claims_) std::swap(claim.inside, claim.outside);
     }
 
-    /// Labels by claims, and the unclaimed cells by the minimum cut.
+    /// Labels claimed cells by their claims, and the other cells by the minimum cut.
     void label() {
         using namespace boost;
         using Traits = adjacency_list_traits<vecS, vecS, directedS>;
@@ -201,11 +203,12 @@ private:
         }
     }
 
-    /// At the vertex, lets that part of its cells change sides that makes the most surplus parts, at all vertices,
-    /// disappear; ties: the part that the mesh claims least, then the smaller one. False if none disappears.
+    /// Lets one part of the cells at the vertex change sides: the part whose change removes most surplus parts at all
+    /// vertices. Ties: the part that the mesh claims least, then the smaller one. Returns false if no change removes
+    /// any.
     bool mend(u32 vertex) {
         if (stars_->surplus_parts(vertex, labels_) == 0) return false;
-        std::map<std::pair<bool, u32>, std::vector<u32>> parts;  // first those inside, ascending by lowest cell
+        std::map<std::pair<bool, u32>, std::vector<u32>> parts;  // inside parts first, ascending by lowest cell
         for (u32 i = 0; i < stars_->cells().size(); ++i)
             if (const u32 part = stars_->part(i), cell = stars_->cells()[i]; part != hull)
                 parts[{labels_[cell] == 0, part}].push_back(cell);
@@ -247,13 +250,13 @@ private:
     /// Face-connected parts of either side change sides if no component of the mesh has most of its triangles there.
     void drop_specks() {
         const u32 count = static_cast<u32>(labels_.size());
-        DisjointSets parts(count + 1);  // the last: beyond the hull
+        DisjointSets parts(count + 1);  // the last element: the space beyond the hull
         for (u32 cell = 0; cell < count; ++cell)
             for (const u32 other : tets_.neighbours[cell]) {
                 if (other == hull && labels_[cell] == 0) parts.unite(cell, count);
                 if (other != hull && labels_[other] == labels_[cell]) parts.unite(cell, other);
             }
-        std::map<std::pair<u32, u8>, std::map<u32, double>> areas;  // by component and side: of parts
+        std::map<std::pair<u32, u8>, std::map<u32, double>> areas;  // by component and side: the area in each part
         for (u32 cell = 0; cell < count; ++cell) {
             const Claim& its = claims_[cell];
             const double area = labels_[cell] ? its.inside : its.outside;
@@ -267,8 +270,8 @@ private:
             if (!stays[parts.find(cell)]) labels_[cell] ^= 1;
     }
 
-    /// The facet of the solid's boundary that joins the facet opposite to corner i of `cell` at the edge opposite to
-    /// its corner `third`, on the side of the solid.
+    /// Finds the boundary facet that is joined to a given boundary facet at an edge, by walking around the edge inside
+    /// the solid. The given facet is opposite to corner i of `cell`, and the edge is opposite to its corner `third`.
     std::array<u32, 2> mate(u32 cell, std::size_t i, u32 third) const {
         const auto across = std::ranges::find(tets_.cells[cell], third) - tets_.cells[cell].begin();
         EdgeWalk walk(tets_, cell, static_cast<int>(across), static_cast<int>(i));
@@ -276,7 +279,8 @@ private:
         return {walk.cell(), static_cast<u32>(walk.across())};
     }
 
-    /// Edges of four triangles, because a fan passes an edge twice; as vertices without copies.
+    /// Edges with four triangles, where a fan passes an edge twice. Copies of vertices are replaced by the vertices
+    /// themselves.
     std::vector<Edge> edges_of_four(const ClosingSolid& solid) const {
         std::vector<Edge> directed, result;
         for (const Triangle& triangle : solid.triangles)
@@ -293,7 +297,7 @@ private:
         return result;
     }
 
-    /// The boundary. A vertex that still has several fans gets a copy for every fan but the first.
+    /// The boundary of the solid. A vertex that still has several fans gets a copy for every fan but the first.
     ClosingSolid boundary() {
         ClosingSolid result;
         std::vector<std::array<u32, 2>> facets;
@@ -323,7 +327,7 @@ private:
                 fans.unite(corner(f, a), corner(other, a));
                 fans.unite(corner(f, b), corner(other, b));
             }
-        std::vector<u32> fan_of(positions_.size(), hull);  // the first fan of a vertex keeps it
+        std::vector<u32> fan_of(positions_.size(), hull);  // the first fan of a vertex keeps the vertex itself
         std::map<u32, u32> copy_of;
         for (u32 f = 0; f < facets.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {

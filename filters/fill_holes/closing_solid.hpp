@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Closes an open mesh as a whole, where its holes cannot be closed one by one: as the boundary of a solid.
+/// Closes an open mesh as a whole, as the boundary of a solid, if its holes cannot be closed one by one.
 
 #include <span>
 #include <vector>
@@ -10,35 +10,38 @@
 
 namespace scanmill {
 
-/// The same triangle with its smallest corner first, in the same direction.
+/// The triangle rotated so that its lowest vertex comes first.
 Triangle smallest_first(Triangle triangle);
 
 struct ClosingSolid {
-    /// Empty if there is no such solid.
+    /// Empty if no solid was found.
     std::vector<Triangle> triangles;
-    /// Copies of vertices, numbered from #positions on: the vertices at whose positions they are.
+    /// For each copy of a vertex, the vertex at the same position. Copies are numbered from #positions on.
     std::vector<u32> copies;
 };
 
 /// A closed surface on the mesh's vertices that contains nearly all of its triangles.
 ///
-/// The vertices are tetrahedralised (Delaunay). Cells behind a triangle of the mesh are inside, cells in front of one
-/// and those beyond the hull are outside; a cell that both claim belongs to the side with more area. Other cells
-/// are divided so that the boundary has the least area (minimum cut). Triangles from row `given`
-/// on are suggestions: they claim nothing, and a tenth of their area counts. Face-connected parts of
-/// either side in which no component of the mesh has most of its triangles are left out. At a vertex where the boundary
-/// is not one closed fan, parts of its cells then change sides, as long as such surplus parts disappear; where some are
-/// left, every fan gets its own copy of the vertex at the same position. If a fan passes an edge twice, the cells
-/// around this edge become inside first.
+/// The vertices are tetrahedralised (Delaunay). A triangle of the mesh claims the cell behind it for the inside, and
+/// the cell in front of it for the outside. A cell that is claimed for both sides belongs to the side with more area.
+/// The space beyond the hull is outside. The other cells are divided so that the boundary has the least area (minimum
+/// cut). Triangles from row `given` on are suggestions: they claim nothing, and a tenth of their area counts in the
+/// cut.
 ///
-/// Returns the boundary, in the orientation of the mesh; of vertices at one position it uses the first. It is a closed
-/// manifold and does not intersect itself, because its triangles are facets of one tetrahedralisation. It lacks the
-/// triangles of the mesh that are not such facets. Empty if the vertices are within rounding of a plane, or if
-/// that does not help.
+/// Three repairs follow. A face-connected part of either side is left out if no component of the mesh has most of its
+/// triangles there. At a vertex where the boundary is not one closed fan, parts of the vertex's cells change sides
+/// while this removes surplus parts. If several fans are left at a vertex, each further fan gets its own copy of the
+/// vertex at the same position. If a fan passes an edge twice, the cells around this edge are labelled inside, and the
+/// repairs start again.
 ///
-/// Pre: at least one triangle; finite vertices; `origin` is the frame's. Which side is which is decided by the
-/// triangles on the convex hull. Deterministic: the same bytes for any number of threads. Cost: O(n log n) time for
-/// scanned surfaces and about 2 kB per vertex.
+/// Returns the boundary, in the orientation of the mesh. Of vertices at one position, the boundary uses the first. It
+/// is a closed manifold. It does not intersect itself, because its triangles are facets of one tetrahedralisation.
+/// Triangles of the mesh that are not such facets are missing. The result is empty if the vertices are within rounding
+/// of a plane, or if the repairs do not end.
+///
+/// Pre: at least one triangle; finite vertices; `origin` is the frame's. The triangles on the convex hull decide which
+/// side is inside. Deterministic: the same bytes for any number of threads. Cost: O(n log n) time for scanned surfaces,
+/// and about 2 kB per vertex.
 /// Source: the graph of Labatut, Pons, Keriven 2009, "Robust and efficient surface reconstruction from range data",
 /// with a mesh in place of lines of sight; maximum flow by Boykov, Kolmogorov 2004.
 ClosingSolid closing_solid(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::size_t given,

@@ -21,12 +21,13 @@ namespace scanmill {
 
 namespace {
 
-constexpr double doubtful_share = 0.05;  // filled share of the whole area
-constexpr double most_filled = 0.5;  // share of the whole area: above it the mesh does not determine a solid
+constexpr double doubtful_share = 0.05;  // a larger filled share of the whole area is doubtful
+constexpr double most_filled = 0.5;  // with a larger filled share, the mesh does not determine a solid
 
 void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
     if (params.max_edges && *params.max_edges < 3)
-        throw Error("max-edges must be at least 3, as a loop has no fewer edges; it is {}", *params.max_edges)
+        throw Error("max-edges must be at least 3, because every loop has at least 3 edges; it is {}",
+                    *params.max_edges)
             .hint("leave max-edges out to fill loops of any number of edges");
     if (params.max_length && !(params.max_length->value() > 0))
         throw Error("max-length must be above 0; it is {:g} u", params.max_length->value())
@@ -36,18 +37,18 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
     for (std::size_t t = mesh.triangles.size(); t-- > 0;)
         if (half_edges::has_repeated_vertex(mesh.triangles[t])) ++repeats, first = t;
     if (repeats > 0)
-        throw Error("{} a repeated vertex, first triangle {}: {}, {} and {}",
+        throw Error("{} a repeated vertex; the first is triangle {}, with the vertices {}, {} and {}",
                     count_text(repeats, "triangle has", "triangles have"), first, mesh.triangles[first][0],
                     mesh.triangles[first][1], mesh.triangles[first][2])
             .hint("repair drops such triangles");
 }
 
-/// The triangulations of the loops, none of which intersects anything; a hole without one is open.
+/// Triangulates the loops. No triangulation intersects anything; a hole without a triangulation is open.
 Assembly fillings_of(const TriangleMesh& mesh, const MeshLoops& boundary, std::vector<Hole>& holes, Context& context) {
     Assembly all(mesh, {});
     if (holes.empty()) return all;
     const Conflicts conflicts(mesh, holes);
-    // The first round takes the most time. Further rounds are few; each gets a part of what is left.
+    // The first round takes the most time. The few further rounds each get a part of the remaining progress.
     for (double from = 0, to = 0.7;; from = std::exchange(to, to + (0.8 - to) / 2)) {
         context.check_cancelled();
         std::atomic<std::size_t> done = 0;
@@ -83,22 +84,21 @@ void report_doubts(const FillHolesResult& result, double diagonal, std::size_t t
                    Context& context) {
     if (too_long > 0)
         context.doubt(
-            fmt::format("{} longer than the diagonal of the mesh ({:.6g} u) filled, the longest {:.6g} u: "
-                        "{} as large as the object is invented; max-length leaves such loops open",
+            fmt::format("{} longer than the diagonal of the mesh ({:.6g} u), but filled; the longest has {:.6g} u. The "
+                        "new triangles invent {} as large as the object; max-length leaves such loops open",
                         count_text(too_long, "loop is", "loops are"), diagonal, result.longest,
-                        by_count(too_long, "a surface", "surface")));
+                        by_count(too_long, "a surface", "surfaces")));
     if (share > doubtful_share)
         context.doubt(
-            fmt::format("{:.1f} % of the surface are fillings, more than {:.0f} %", 100 * share, 100 * doubtful_share));
+            fmt::format("{:.1f} % of the surface is new, more than {:.0f} %", 100 * share, 100 * doubtful_share));
     if (result.together > 0)
         context.doubt(fmt::format(
-            "{} no filling of {} own that intersects nothing: the surface was closed as a whole, and {} of it replaced",
+            "{} no triangulation of {} own without intersections: the surface was closed as a whole, which replaced {}",
             count_text(result.together, "loop has", "loops have"), by_count(result.together, "its", "their"),
             count_text(result.replaced, "triangle", "triangles")));
     if (result.failed > 0)
-        context.doubt(fmt::format(
-            "{} open: no filling was found that intersects neither the surface nor itself nor another filling",
-            count_text(result.failed, "loop stays", "loops stay")));
+        context.doubt(fmt::format("{} open: no triangulation without intersections was found",
+                                  count_text(result.failed, "loop stays", "loops stay")));
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     const MeshLoops boundary(mesh);
     if (const std::size_t seams = coincident_edges(mesh, boundary.half_edges()).size(); seams > 0)
         context.warn(
-            fmt::format("{} at the position of another one: the surface is cut there, not missing; repair "
+            fmt::format("{} at the position of another boundary edge: the surface is cut there, but complete; repair "
                         "joins such edges",
                         count_text(seams, "boundary edge is", "boundary edges are")));
     const FillingStage first_stage = params.fair ? FillingStage::faired : FillingStage::refined;

@@ -17,7 +17,8 @@ namespace {
 
 constexpr u32 invalid_index = ~u32(0);
 
-/// `column` with the vectors `added`, repeated to fill a row, in its last rows. Rows whose vector is 0 stay.
+/// Copies `column` with the vectors `added` in its last rows; a vector is repeated to fill a row. A row whose vector is
+/// 0 keeps its values.
 template <class Number>
 Column with_directions(const Column& column, std::span<const Vec3> added) {
     const std::span<const Number> old = column.values<Number>();
@@ -29,8 +30,8 @@ Column with_directions(const Column& column, std::span<const Vec3> added) {
     return {column.name(), column.components(), Buffer<Number>(std::move(values))};
 }
 
-/// Gathers the columns at `rows`; the last rows of column `name` get the directions `added`. The column `filled` marks
-/// the rows in `marks`, and those that it marked before.
+/// Gathers the columns at `rows`. The last rows of the column `name` get the directions `added`. The column `filled` is
+/// 1 for the rows in `marks`, and for rows that the input marks.
 ColumnTable extended(const ColumnTable& columns, const Array<u32>& rows, std::string_view name, u32 width,
                      std::span<const Vec3> added, std::span<const u8> marks, std::string_view element,
                      Context& context) {
@@ -41,8 +42,8 @@ ColumnTable extended(const ColumnTable& columns, const Array<u32>& rows, std::st
             if (column.components() == 1 && column.type() == ScalarType::uint8)
                 std::ranges::copy(column.values<u8>(), filled.begin());
             else
-                context.warn(fmt::format("the {} column 'filled' of the input is replaced: it is not one uint8 per row",
-                                         element));
+                context.warn(fmt::format(
+                    "the {} column 'filled' of the input is replaced: it does not have one uint8 per row", element));
         } else if (column.name() == name && column.components() == width && column.type() == ScalarType::float32) {
             result.add(with_directions<float>(column, added));
         } else if (column.name() == name && column.components() == width && column.type() == ScalarType::float64) {
@@ -132,7 +133,7 @@ FilledMesh filled_mesh(const TriangleMesh& mesh, Assembly all, std::span<const H
     for (const Hole& hole : holes) {
         if (hole.triangles.empty()) continue;
         const std::size_t last = first + hole.triangles.size();
-        // Breadth first from the loop; a vertex takes the slot in the loop of the one that reaches it first.
+        // Searches breadth first from the loop. Every vertex takes the loop slot of the vertex that reaches it first.
         std::unordered_map<u32, u32> slot;
         std::unordered_map<u32, std::vector<u32>> beside;
         for (std::size_t t = first; t < last; ++t)
@@ -178,7 +179,7 @@ std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, st
         return make_edge(ends[0], ends[1]);
     };
     std::map<Edge, u32> uses;
-    std::vector<u32> at_vertex(filled.positions.size(), invalid_index);  // the first triangle
+    std::vector<u32> at_vertex(filled.positions.size(), invalid_index);  // by vertex: its first triangle
     std::vector<std::pair<Triangle, u32>> rows;
     for (u32 t = 0; t < count; ++t) {
         rows.emplace_back(smallest_first(filled.triangles[t]), t);
@@ -190,7 +191,7 @@ std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, st
     }
     std::ranges::sort(rows);
     constexpr Triangle none{invalid_index, invalid_index, invalid_index};
-    std::vector<Triangle> stays(count, none), added;  // as they are with copies
+    std::vector<Triangle> stays(count, none), added;  // `stays`: by old triangle, its corners with copies
     for (const Triangle& triangle : closed.triangles) {
         const Triangle key = smallest_first(original(triangle));
         const auto found = std::ranges::lower_bound(rows, std::pair(key, u32(0)));
@@ -251,7 +252,7 @@ std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, st
 
 TriangleMesh with_columns(const TriangleMesh& mesh, FilledMesh filled, Context& context) {
     const std::size_t vertices = mesh.positions.size();
-    const std::size_t copies = filled.positions.size() - filled.copies;  // the first one
+    const std::size_t copies = filled.positions.size() - filled.copies;  // the first copy
     std::vector<Vec3> facet_normals, vertex_normals(filled.positions.size() - vertices, Vec3::Zero());
     for (std::size_t t = filled.kept; t < filled.triangles.size(); ++t) {
         const Vec3 normal = filled.twice_area(t);

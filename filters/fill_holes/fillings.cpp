@@ -14,7 +14,8 @@ namespace scanmill {
 
 namespace {
 
-/// With more edges, all triangulations of a loop take too long: 100 have 161,700 triangles, at about 1 µs each.
+/// Largest number of edges for least_triangulation(). A loop of 100 edges has 161,700 possible triangles, which take
+/// about 1 µs each.
 constexpr std::size_t most_edges_to_avoid = 100;
 
 BoundingBox box_of(std::span<const Vec3> positions, const Triangle& triangle) {
@@ -80,7 +81,7 @@ struct Conflicts::Nearby {
     Array<Triangle> triangles;
     std::optional<TriangleTree> tree;  ///< empty without triangles
 
-    /// Whether meets(triangle) is true for one whose box meets `box`. `rows` is reused memory.
+    /// Whether meets(triangle) is true for any triangle whose box meets `box`. `rows`: reused memory.
     template <class Meets>
     bool any_meets(const BoundingBox& box, Array<u32>& rows, const Meets& meets) const {
         rows.clear();
@@ -183,7 +184,7 @@ std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, 
                                                      const Execution& execution) const {
     constexpr double impossible = HoleTriangulation::impossible;
     const auto vertex = [&](u32 i) { return half_edges::start(mesh_, loop[i]); };
-    // The surface lies on the left of the loop; the triangulation runs the other way round.
+    // The surface is on the left of the loop, so the triangulation runs in the opposite direction.
     const auto triangle = [&](u32 i, u32 k, u32 j) { return Triangle{vertex(j), vertex(k), vertex(i)}; };
     const auto edge_cost = [&](u32 i, u32 j) {
         execution.check_cancelled();
@@ -215,7 +216,8 @@ Triangle Conflicts::joined(Triangle triangle) const {
     return triangle;
 }
 
-/// Triangulations with an inner edge, between two vertices of loops, that the mesh or another triangulation has.
+/// Holes whose triangulation repeats an edge: it has an inner edge, between two vertices of loops, that the mesh or
+/// another triangulation has as well. Of two triangulations with the same edge, only the one that gives way counts.
 std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::span<const u32> begin,
                                                      std::span<const Hole> holes) const {
     std::vector<u32> losers;
@@ -231,7 +233,7 @@ std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::s
                     edges.push_back(key(a, b));
         std::ranges::sort(edges);
         for (std::size_t i = 1; i < edges.size(); ++i) {
-            if (edges[i] != edges[i - 1]) continue;  // the triangulation has one triangle at an edge of the loop
+            if (edges[i] != edges[i - 1]) continue;  // an edge of the loop: only one triangle has it
             if (loop_edges_.contains(edges[i])) losers.push_back(owner);
             const auto [found, is_new] = owner_of.try_emplace(edges[i], owner);
             if (!is_new) losers.push_back(loser_of(owner, found->second, holes));

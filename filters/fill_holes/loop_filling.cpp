@@ -14,7 +14,8 @@
 
 namespace CGAL::CommonKernelFunctors {
 
-/// CGAL's own formula, whose arctangent depends on the processor. Triangulations are chosen by these angles.
+/// CGAL's formula, but with an arctangent that gives the same bits on every processor. CGAL chooses triangulations by
+/// these angles.
 template <>
 inline double Compute_approximate_dihedral_angle_3<Epick>::operator()(const Point_3& a, const Point_3& b,
                                                                       const Point_3& c, const Point_3& d) const {
@@ -33,7 +34,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 namespace processing = CGAL::Polygon_mesh_processing;
 
-/// With more vertices, all triangulations of a loop take too long: 0.1 s with 200, and growing with the cube.
+/// Largest loop for which CGAL searches all triangulations. The search takes 0.1 s with 200 vertices, and its time
+/// grows with their cube.
 constexpr std::size_t most_vertices_of_all = 200;
 
 struct Cancellation : processing::Hole_filling::Default_visitor {
@@ -43,7 +45,7 @@ struct Cancellation : processing::Hole_filling::Default_visitor {
     const Execution* execution;
 };
 
-/// The half-edge of CGAL's mesh that is in the gap at the half-edge `loop`.
+/// Builds CGAL's mesh. Returns its half-edge in the gap, opposite to the half-edge `loop`.
 Mesh::Halfedge_index build(const LoopSurroundings& from, Mesh& mesh) {
     std::vector<Mesh::Vertex_index> vertices;
     for (const Vec3& p : from.positions) vertices.push_back(mesh.add_vertex(Kernel::Point_3(p.x(), p.y(), p.z())));

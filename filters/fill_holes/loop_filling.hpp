@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// One loop of a mesh filled by CGAL, apart from the rest of the mesh.
+/// Fills one loop of a mesh with CGAL, in a mesh that contains only the triangles around the loop.
 
 #include <vector>
 
@@ -9,13 +9,13 @@
 
 namespace scanmill {
 
-/// The triangles around a loop: all that have a vertex of the loop, so that CGAL finds the lengths and normals there.
+/// The triangles that have a vertex of a loop. From them CGAL computes edge lengths and normals at the loop.
 struct LoopSurroundings {
     std::vector<Vec3> positions;
     std::vector<Triangle> triangles;
-    /// By half-edge 3 t + i (see half_edges.hpp): the opposite one, or half_edges::boundary.
+    /// By half-edge 3 t + i (see half_edges.hpp): the opposite half-edge, or half_edges::boundary.
     std::vector<u32> opposite;
-    /// By half-edge on the boundary: the one before it along the boundary.
+    /// For each half-edge on the boundary, the previous half-edge along the boundary.
     std::vector<u32> before_on_boundary;
     /// A half-edge of the loop.
     u32 loop = 0;
@@ -26,10 +26,10 @@ struct LoopSurroundings {
 enum class FillingStage { avoiding, triangulated, refined, faired };
 
 struct LoopFilling {
-    /// Inside the loop.
+    /// Positions of the new vertices, inside the loop.
     std::vector<Vec3> positions;
-    /// Empty if CGAL finds none. Indices below #surroundings.positions are vertices of the surroundings; others, less
-    /// that number, of `positions`.
+    /// Empty if CGAL finds no triangulation. Indices below #surroundings.positions are vertices of the surroundings.
+    /// Higher ones are rows of `positions`, plus that number.
     std::vector<Triangle> triangles;
 };
 

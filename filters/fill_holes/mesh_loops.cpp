@@ -22,7 +22,8 @@ MeshLoops::MeshLoops(const TriangleMesh& mesh) : mesh_(mesh), opposite_(half_edg
     separate_loops();
 }
 
-/// At a vertex with several fans the boundary goes on in the next fan, so a gap between two fans is not crossed.
+/// Links each boundary half-edge to the next one. At a vertex with several fans, the boundary continues in the next
+/// fan, so it does not cross the gap between two fans.
 void MeshLoops::link_fans() {
     std::vector<u32> by_vertex(outgoing_);
     std::ranges::stable_sort(by_vertex, {}, [&](u32 h) { return start(h); });
@@ -92,7 +93,7 @@ Cutout::Cutout(const TriangleMesh& mesh, const MeshLoops& boundary, std::span<co
         part.opposite[h] = other == half_edges::boundary ? other : local(other);
     }
     part.before_on_boundary.assign(count, half_edges::boundary);
-    DisjointSets corners(count);  // corners joined at one vertex
+    DisjointSets corners(count);  // sets of corners at one vertex
     for (u32 h = 0; h < count; ++h) {
         if (part.opposite[h] != half_edges::boundary) {
             corners.unite(h, half_edges::after(part.opposite[h]));

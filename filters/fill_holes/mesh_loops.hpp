@@ -12,23 +12,25 @@
 
 namespace scanmill {
 
-/// The loops that fill_holes() describes. Pre: a mesh that half_edges::opposites() accepts; it outlives this.
+/// The loops that fill_holes() describes. Pre: half_edges::opposites() accepts the mesh, and the mesh outlives this
+/// object.
 class MeshLoops {
 public:
     explicit MeshLoops(const TriangleMesh& mesh);
 
     std::span<const u32> opposite() const { return opposite_; }
-    /// Their half-edges along the boundary; each loop begins with its lowest one, loops ascend by it.
+    /// For each loop, its half-edges along the boundary, beginning with its lowest half-edge. Loops ascend by this
+    /// half-edge.
     const std::vector<std::vector<u32>>& loops() const { return loops_; }
     /// The half-edges on the boundary, ascending.
     std::span<const u32> half_edges() const { return outgoing_; }
-    /// The half-edges of the loops along the boundary.
+    /// The next and the previous half-edge in the loop of `h`.
     u32 next(u32 h) const { return next_.at(h); }
     u32 before(u32 h) const { return before_.at(h); }
     u32 start(u32 h) const { return half_edges::start(mesh_, h); }
 
-    /// The boundary half-edge of the fan of `out` that ends where `out` starts. Calls visit(half-edge) for every
-    /// half-edge of the fan that starts there, `out` first.
+    /// The boundary half-edge that ends at the start of `out`, in the same fan. Calls visit(h) for every half-edge h of
+    /// the fan that starts at this vertex, `out` first.
     template <class Visit>
     u32 incoming(u32 out, Visit&& visit) const {
         for (u32 h = out;;) {
@@ -38,7 +40,7 @@ public:
             h = opposite_[in];
         }
     }
-    /// The same for all fans around the vertex that the gaps between them join.
+    /// Calls visit(h) as incoming() does, for all fans at the vertex that follow each other across the gaps of loops.
     template <class Visit>
     void around(u32 out, Visit&& visit) const {
         u32 h = out;
@@ -59,7 +61,7 @@ private:
 
 double length_of(const TriangleMesh& mesh, std::span<const u32> loop);
 
-/// The surroundings of a loop, and the mesh's vertices that theirs are.
+/// The surroundings of a loop, and for each of their vertices the vertex of the mesh.
 struct Cutout {
     LoopSurroundings part;
     std::vector<u32> vertices;

@@ -10,8 +10,8 @@ SCANMILL_FILTER() {
         .summary("Closes the holes of a mesh with triangles that continue the surface, and marks them.")
         .source("Liepa 2003, Filling holes in meshes; Botsch, Kobbelt 2004 for fairing; by CGAL")
         .ties(
-            "A loop at a limit is filled. Of fillings that intersect each other the one with more edges gives way; of "
-            "equally many, the later one.")
+            "A loop at a limit is filled. Of two triangulations that intersect each other, the one with more edges is "
+            "replaced; with equally many edges, the later one.")
         .not_finite("Refused; the message gives their number and the first one.")
         .adds({"filled"})
         .in<TriangleMesh>("mesh",
@@ -19,30 +19,34 @@ SCANMILL_FILTER() {
                           "vertex. Vertices where holes touch are welcome.")
         .out<TriangleMesh>("mesh",
                            "The input's vertices and triangles in their rows, then the new ones. The face column "
-                           "`filled` and the vertex column `filled` are 1 for new ones; other columns have the values "
-                           "of the boundary beside them.")
+                           "`filled` and the vertex column `filled` are 1 for new rows. Other columns of new rows have "
+                           "the values of the boundary beside them.")
         .param("max-edges", &P::max_edges, "Loops with more boundary edges stay open; `none`: any number.", at_least(3),
                word("none"))
-        .param("max-length", &P::max_length, "Loops that are longer stay open; `none`: any length.", above(0),
+        .param("max-length", &P::max_length, "Loops longer than this stay open; `none`: any length.", above(0),
                word("none"))
         .param("fair", &P::fair,
                "Moves the new vertices so that they continue the surface without a crease. Otherwise they stay "
                "in the triangles that span the loop.")
-        .param("together", &P::together,
-               "If loops stay open because any triangulation would intersect something, closes the whole surface, as "
-               "the boundary of a solid, which replaces some of its triangles. Not if a limit leaves loops open.")
+        .param(
+            "together", &P::together,
+            "If loops stay open because every triangulation would intersect something, closes the whole surface as the "
+            "boundary of a solid. This replaces some of its triangles. It is not done if a limit leaves loops open.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
         .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without valid triangles.", headline)
         .metric("added-triangles", Unit::count, "New triangles.")
         .metric("added-points", Unit::count, "New vertices.")
         .metric("area", Unit::area, "Area of the new triangles.")
-        .metric("share", Unit::ratio, "The same as a share of the whole area, fillings included.", smaller_is_better)
+        .metric("share", Unit::ratio, "Area of the new triangles as a share of the whole area.", smaller_is_better)
         .metric("longest", Unit::length, "Length of the longest filled loop.", smaller_is_better)
         .metric("plain", Unit::count,
                 "Filled loops whose faired triangulation would intersect something, so a plainer one was used.")
         .metric("together", Unit::count,
-                "Filled loops without a triangulation of their own: the whole surface was closed.", smaller_is_better)
-        .metric("replaced-triangles", Unit::count, "Triangles of the input that this replaced.", smaller_is_better)
+                "Filled loops that were closed together with the whole surface, because they have no triangulation of "
+                "their own.",
+                smaller_is_better)
+        .metric("replaced-triangles", Unit::count,
+                "Triangles of the input that were replaced to close the whole surface.", smaller_is_better)
         .metric("failed", Unit::count,
                 "Loops within the limits that stay open because any triangulation would intersect "
                 "something.",

@@ -44,7 +44,8 @@ TEST(FillHolesRefuses, NaN) {
 
 TEST(FillHolesRefuses, ATriangleWithARepeatedVertex) {
     const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 1, 2}}));
-    EXPECT_EQ(error.sentence(), "1 triangle has a repeated vertex, first triangle 1: 1, 1 and 2");
+    EXPECT_EQ(error.sentence(),
+              "1 triangle has a repeated vertex; the first is triangle 1, with the vertices 1, 1 and 2");
     EXPECT_THAT(error.hint(), HasSubstr("repair"));
 }
 
