@@ -14,22 +14,24 @@ namespace scanmill {
 struct DistanceNumbers {
     std::size_t samples = 0;
     double mean = 0;
-    /// Standard error of the mean. Sample i belongs to batch i mod 32. With batch means m_i and their mean m it is
-    /// sqrt(Σ (m_i - m)² / (32 · 31)). Evenly spread samples vary less than that, rarely more.
-    /// Absent for the points of a cloud: all of them are used.
+    /// Standard error of the mean. Sample i belongs to batch i mod 32. With batch means m_i and their mean m, the
+    /// standard error is sqrt(Σ (m_i - m)² / (32 · 31)). The mean of evenly spread samples usually varies less than
+    /// that. Absent for the points of a cloud, because all points are used.
     std::optional<double> mean_spread;
     double rms = 0;
     double p50 = 0, p90 = 0, p95 = 0, p99 = 0;
-    /// Over the samples and all vertices of their surface.
+    /// Largest distance of the samples and of all vertices of their surface.
     double max = 0;
 };
 
 namespace measuring {
 
-/// Pre: at least one distance, no NaN. Fewer than 32 samples have a spread of 0. `vertices` count for the maximum only.
+/// `vertices`: distances of vertices, which count for the maximum only. With fewer than 32 distances, mean_spread is 0.
+/// Pre: at least one distance, no NaN.
 DistanceNumbers numbers_of(std::span<const double> distances, std::span<const double> vertices);
 
-/// Both directions, each with half of the weight. Pre: the same number of distances in both.
+/// Numbers of both directions together, each with half of the weight. Pre: the same number of distances in both
+/// directions.
 DistanceNumbers numbers_of_both(const DistanceNumbers& one, std::span<const double> distances_of_one,
                                 const DistanceNumbers& other, std::span<const double> distances_of_other);
 
@@ -40,7 +42,8 @@ double share_within(std::span<const double> distances, double threshold);
 /// 0 ≤ share ≤ 1.
 double quantile(std::span<const double> sorted, double share);
 
-/// A sum with the digits that additions lose (Neumaier 1974): its error does not grow with the number of terms.
+/// A sum that keeps the digits that additions lose (Neumaier 1974), so its error does not grow with the number of
+/// terms.
 class CompensatedSum {
 public:
     void add(double term) {

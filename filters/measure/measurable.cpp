@@ -33,7 +33,7 @@ struct UnitPair {
     double ratio;
 };
 
-/// The likely confusions first: of two pairs with the same ratio, the first is named.
+/// Likely confusions come first, because the first of several pairs with the same ratio is named.
 std::vector<UnitPair> unit_pairs() {
     using enum LengthUnit;
     std::vector<UnitPair> pairs;
@@ -65,7 +65,7 @@ std::array<double, 3> ascending_extents(const BoundingBox& box) {
     return extents;
 }
 
-/// The units whose ratio all extents of `large` have to those of `small`.
+/// Two units whose ratio equals the ratio of each extent of `large` to the same extent of `small`.
 std::optional<UnitPair> confused_units(const BoundingBox& large, const BoundingBox& small) {
     const auto of_large = ascending_extents(large), of_small = ascending_extents(small);
     for (const UnitPair& pair : unit_pairs()) {
@@ -114,7 +114,7 @@ std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams
         if (!(thresholds.back() > 0 && std::isfinite(thresholds.back())))
             throw Error("the threshold {} is {} in the unit of the mesh; thresholds must be above 0 and finite",
                         threshold.text(), number_text(thresholds.back()))
-                .hint("give it as a share of the mesh's size, for example 0.5 %diag");
+                .hint("give the threshold as a share of the mesh's size, for example 0.5 %diag");
     }
     return thresholds;
 }
@@ -171,9 +171,11 @@ std::vector<std::string> require_comparable(const BoundingBox& mesh, const Bound
 
     if (small.diagonal() > 0)
         if (const auto units = confused_units(large, small))
-            throw Error("{}: {:.4g} times as large in every direction, as if the {} were in {} and the {} in {}", sizes,
-                        large.diagonal() / small.diagonal(), larger_name, symbol(units->smaller), smaller_name,
-                        symbol(units->larger))
+            throw Error(
+                "{}: one is {:.4g} times as large as the other in every direction, as if the {} were in {} and the {} "
+                "in {}",
+                sizes, large.diagonal() / small.diagonal(), larger_name, symbol(units->smaller), smaller_name,
+                symbol(units->larger))
                 .hint(way_out);
     const bool is_part = truth_may_be_part && !truth_is_larger;
     if (!is_part && large.diagonal() > most_times_larger * small.diagonal())
@@ -181,12 +183,13 @@ std::vector<std::string> require_comparable(const BoundingBox& mesh, const Bound
                     most_times_larger)
             .hint(way_out);
     if (const double gap = gap_between(mesh, truth); gap > widest_gap * large.diagonal())
-        throw Error("the mesh extends from {}, the truth from {}: {:.4g} {} apart, so they are not in one frame",
-                    range_text(mesh), range_text(truth), gap, symbol(unit))
+        throw Error(
+            "the mesh extends from {}, the truth from {}: they are {:.4g} {} apart, so they are not in one frame",
+            range_text(mesh), range_text(truth), gap, symbol(unit))
             .hint(way_out);
     if (!is_part && large.diagonal() > remarkable_times_larger * small.diagonal())
-        return {fmt::format("{}: the diagonals differ by a factor of {:.3g}; compared as they are", sizes,
-                            large.diagonal() / small.diagonal())};
+        return {fmt::format("{}: the diagonals differ by a factor of {:.3g}; the objects are compared as they are",
+                            sizes, large.diagonal() / small.diagonal())};
     return {};
 }
 

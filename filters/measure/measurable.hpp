@@ -12,26 +12,26 @@
 
 namespace scanmill::measuring {
 
-/// Enough samples, and a gap between 0 % and 100 %.
+/// Requires enough samples, and a gap between 0 % and 100 %.
 void require_sound(const MeasureParams& params);
 
-/// The thresholds in the mesh's unit, above 0 and finite.
+/// The thresholds in the mesh's unit. Throws Error if one is not above 0 or not finite.
 std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams& params);
 
-/// Consistent and finite, and at least one triangle has an area. `name`: "mesh" or "truth".
+/// Requires a consistent and finite mesh with at least one triangle that has an area. `name`: "mesh" or "truth".
 void require_surface(const TriangleMesh& mesh, std::string_view name);
 
-/// The truth's positions in the mesh's unit, relative to the mesh's origin. The same buffer if the frames are equal.
-/// Throws Error if both frames have names and these differ.
+/// The truth's positions in the mesh's unit, relative to the mesh's origin. Returns the same buffer if the frames are
+/// equal. Throws Error if both frames have names and the names differ.
 Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec3>& positions);
 
-/// Refuses two bounding boxes (of the same frame) whose sizes or positions show that unit or frame differ:
-///  - every extent of one is k times that of the other, within 5 %, where k is the ratio of two units (10 for mm and
-///    cm, 25.4 for in and mm, 1000 for mm and m …). Extents are compared in ascending order, so that a turned box
-///    compares; those below a tenth of the diagonal in both boxes do not count;
-///  - one diagonal is more than 30 times the other, unless the truth is the smaller one and may be a part (points);
+/// Throws Error if the sizes or positions of two bounding boxes (in the same frame) show that unit or frame differ:
+///  - every extent of one box is k times that of the other, within 5 %, where k is the ratio of two units (10 for mm
+///    and cm, 25.4 for in and mm, 1000 for mm and m …). Extents are compared in ascending order, because a box may be
+///    turned. An extent below a tenth of the diagonal in both boxes does not count;
+///  - one diagonal is more than 30 times the other. This is allowed if the truth is smaller and `truth_may_be_part`;
 ///  - the boxes are more than a tenth of the longer diagonal apart.
-/// Smaller differences are measured. Returns warnings: one if a diagonal is more than twice the other, else none.
+/// Smaller differences are allowed. Returns warnings: one if a diagonal is more than twice the other, else none.
 std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, bool truth_may_be_part,
                                             LengthUnit unit);
 

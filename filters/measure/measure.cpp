@@ -53,7 +53,7 @@ Array<Vec3> positions_at(const TriangleMesh& mesh, const Array<u32>& vertices) {
     return positions;
 }
 
-/// Adds the distances of vertices that are in no triangle, which `found` does not contain.
+/// Distances of all vertices: those in `found`, and those of vertices in no triangle, which `found` does not contain.
 Array<double> distances_of_all(const TriangleMesh& mesh, const NearestDistances& found, const TriangleTree& truth,
                                double rounding, Context& context) {
     Array<double> distances = found.distances;
@@ -66,7 +66,7 @@ Array<double> distances_of_all(const TriangleMesh& mesh, const NearestDistances&
     return distances;
 }
 
-/// Negates the distances of vertices that the truth encloses. Pre: it is closed.
+/// Negates the distances of vertices that the truth encloses. Pre: the truth is closed.
 void sign_inside(Array<double>& distances, const TriangleMesh& mesh, const TriangleMesh& truth,
                  const TriangleTree& tree, Context& context) {
     Array<u32> apart;
@@ -137,7 +137,7 @@ void measure_mesh_alone(Measurement& result, const TriangleMesh& mesh, const Tri
     context.progress(0.8);
 }
 
-/// Refuses or warns if sizes and positions show that unit or frame differ.
+/// Throws Error, or warns with same_frame, if sizes and positions show that unit or frame differ.
 void compare_extents(const TriangleMesh& mesh, const BoundingBox& truth, bool truth_may_be_part,
                      const MeasureParams& params, Context& context) {
     try {

@@ -2,10 +2,11 @@
 #pragma once
 /// The distance between a mesh and its truth, in numbers and by vertex, and the quality of the mesh by itself.
 ///
-/// Distances are from points of one surface to the nearest point of the other's triangles, in both directions: *to the
-/// truth* shows surplus surface of the mesh, *from the truth* shows missing surface. They are computed at points spread
-/// evenly over the area; largest distances also at every vertex. If the truth is a cloud, it has no area: its points
-/// are the samples of that direction, and distances from the mesh to its points have names of their own.
+/// A distance is measured from a point of one surface to the nearest point of the other's triangles. Both directions
+/// are measured: distances *to the truth* show surplus surface of the mesh, distances *from the truth* show missing
+/// surface. Distances are computed at points spread evenly over the area; largest distances also include every vertex.
+/// A truth that is a cloud has no area, so its points are the samples of that direction. Distances from the mesh to the
+/// points of a cloud have names of their own.
 
 #include <optional>
 #include <vector>
@@ -25,23 +26,24 @@ constexpr u32 fewest_samples = 32;
 
 struct MeasureParams {
     enum class Borders { include, exclude };
-    /// Points on each mesh, at least fewest_samples.
+    /// Number of points spread over each mesh, at least fewest_samples.
     u32 samples = 100'000;
-    /// Distances that count as near for precision and recall; each above 0. Relative ones refer to the mesh.
+    /// Distances that count as near for precision and recall; each above 0. Relative lengths refer to the mesh.
     std::vector<Length> thresholds = std::vector(1, Length::percent_of_diagonal(0.5));
-    /// Whether pairs of intersecting triangles are counted; takes about as long as everything else.
+    /// Whether pairs of intersecting triangles are counted. This takes about as long as everything else.
     bool self_intersections = true;
-    /// Unit and frame are equal for certain: sizes and positions that suggest otherwise only cause a warning.
+    /// The caller asserts that unit and frame are equal. Sizes and positions that suggest otherwise then only cause a
+    /// warning.
     bool same_frame = false;
     /// Whether bounds of the Hausdorff distance are computed and reported; needs a mesh as truth.
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).
     Ratio gap = Ratio::percent(1);
-    /// Whether points of a cloud count whose nearest point on the mesh is on a boundary edge (an edge of only one
-    /// triangle) or on a vertex of one. Their distance shows where the mesh ends, not how well it fits.
-    /// Excluding needs points as truth.
+    /// Whether points of a cloud are used if their nearest point on the mesh is on a boundary edge (an edge of only one
+    /// triangle) or on an end of one. The distance of such a point shows where the mesh ends, not how well it fits.
+    /// `exclude` needs points as truth.
     Borders borders = Borders::include;
-    /// Parts of triangles cut before the refinement ends with the bounds reached.
+    /// Largest number of cuts of triangle parts. After them, the refinement ends with the bounds reached so far.
     u64 most_cuts = 10'000'000;
 };
 
@@ -52,19 +54,20 @@ struct NearShares {
     std::optional<double> precision;
     /// Share of the truth within the threshold of the mesh.
     double recall = 0;
-    /// Harmonic mean of the two, 0 if both are 0; absent with precision.
+    /// Harmonic mean of precision and recall, 0 if both are 0; absent if precision is absent.
     std::optional<double> f_score;
 };
 
 struct Measurement {
-    /// From the mesh to the truth's triangles; absent if the truth is a cloud.
+    /// Distances from the mesh to the truth's triangles; absent if the truth is a cloud.
     std::optional<DistanceNumbers> to_truth;
-    /// From the mesh to the nearest point of a cloud: not a distance between surfaces, because it cannot fall below the
-    /// cloud's spacing. Absent if the truth is a mesh.
+    /// Distances from the mesh to the nearest points of a cloud. They are not distances between surfaces, because the
+    /// cloud's spacing keeps them above 0. Absent if the truth is a mesh.
     std::optional<DistanceNumbers> to_points;
-    /// From the truth, its area or its points, to the mesh's triangles.
+    /// Distances from the truth's area, or from its points, to the mesh's triangles.
     DistanceNumbers from_truth;
-    /// Points of a cloud left out of from_truth and all that follows from it; absent unless borders are excluded.
+    /// Number of points of a cloud that from_truth, and every number derived from it, leaves out. Absent unless borders
+    /// are excluded.
     std::optional<std::size_t> beyond_borders;
     /// Both directions with equal weight; for a cloud, equal to from_truth.
     DistanceNumbers both;
@@ -74,44 +77,46 @@ struct Measurement {
     /// Half the sum of the two directions' means; absent for a cloud.
     std::optional<double> chamfer;
     std::vector<NearShares> near;
-    /// Mean cosine between the normal of a sample's triangle and that of the nearest one on the other surface, over
-    /// both directions; -1 for a mesh inside out. Absent for a cloud, or if no pair has two normals.
+    /// Mean cosine between the normals of a sample's triangle and of the nearest triangle on the other surface, over
+    /// both directions. It is -1 for a mesh that is inside out. Absent for a cloud, or if every pair lacks a normal.
     std::optional<double> normal_consistency;
-    /// The same with absolute values, so independent of orientation.
+    /// Mean absolute value of the cosines of normal_consistency; it does not depend on orientation.
     std::optional<double> normal_consistency_unsigned;
-    /// Samples whose nearest triangle is degenerate and has no normal; left out of the two numbers above.
+    /// Number of samples that both consistencies leave out, because their nearest triangle is degenerate and has no
+    /// normal.
     std::size_t without_normal = 0;
-    LengthUnit unit = LengthUnit::unknown;  ///< the mesh's, of all lengths here
+    LengthUnit unit = LengthUnit::unknown;  ///< unit of all lengths here: the mesh's
     double diagonal = 0;  ///< of the mesh's bounding box
     MeshNumbers mesh;
     std::optional<MeshNumbers> truth;
     /// Pairs of the mesh's triangles, see scanmill::self_intersections(); absent unless requested.
     std::optional<std::size_t> self_intersections;
     std::optional<CertifiedHausdorff> certified;
-    /// By vertex of the mesh, also of those in no triangle: the distance to the nearest triangle or point of the truth.
-    /// Negative where the truth encloses the vertex, if it is a closed mesh (truth->topology.closed): inside is inside
-    /// whichever way the truth faces. 0 within rounding, without sign.
+    /// By vertex of the mesh, including vertices in no triangle: the distance to the nearest triangle or point of the
+    /// truth. If the truth is a closed mesh (truth->topology.closed), distances are negative at vertices that it
+    /// encloses, whatever its orientation. Distances within rounding are 0, without sign.
     Array<double> vertex_distances;
 };
 
 /// Measures `mesh` against `truth`.
 ///
-/// Frames: if both units are declared and differ, the truth is converted. An unknown unit is taken as equal. Frames
-/// with different names, or sizes and positions that show that unit or frame differ (see measurable.hpp), are an Error.
-/// Origins may differ. All lengths are in the mesh's unit.
-/// Pre: finite coordinates; at least one triangle of area above 0 on every mesh; a cloud has a point. Else Error.
-/// Vertices in no triangle are not part of a surface. Degenerate triangles are segments or points of it.
-/// Distances of at most 2^-46 of the largest coordinate are 0, the rounding of samples. A mesh has distance 0 to
-/// itself.
-/// Ties: of equally near triangles the smallest row gives the normal.
+/// Frames: if both units are declared and differ, the truth is converted. An unknown unit is taken as equal. Throws
+/// Error if the frames have different names, or if sizes and positions show that unit or frame differ (see
+/// measurable.hpp). Origins may differ. All lengths are in the mesh's unit.
+/// Pre: finite coordinates; at least one triangle of area above 0 on every mesh; at least one point in a cloud.
+/// Otherwise throws Error. Vertices in no triangle are not part of a surface. Degenerate triangles count as segments or
+/// points.
+/// Distances of at most 2^-46 of the largest coordinate are set to 0, because samples are rounded that much. So a mesh
+/// has distance 0 to itself.
+/// Ties: of equally near triangles, the one with the lowest row gives the normal.
 /// Deterministic for a seed; bytes do not depend on the number of threads. Cost: O((samples + F) log F).
 /// Source: Aspert, Santa-Cruz, Ebrahimi 2002 (MESH) for the two directions; Knapitsch et al. 2017 for precision and
 /// recall.
 Measurement measure(const TriangleMesh& mesh, const TriangleMesh& truth, const MeasureParams& params, Context& context);
 Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const MeasureParams& params, Context& context);
 
-/// The mesh with Measurement::vertex_distances as the vertex column `distance-to-truth`, of lengths. Replaces a column
-/// of that name. Shares the mesh's memory. Pre: measured from this mesh.
+/// The mesh with Measurement::vertex_distances as the vertex column `distance-to-truth`, a column of lengths. Replaces
+/// an existing column of that name. Shares the mesh's memory. Pre: `measured` is a measurement of this mesh.
 TriangleMesh deviation_of(const TriangleMesh& mesh, const Measurement& measured);
 
 /// A measurement under the metric names of workflows, gates and reports. A number that is absent from the measurement

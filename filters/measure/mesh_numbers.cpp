@@ -19,7 +19,7 @@ namespace scanmill {
 namespace measuring {
 
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-    // Opposite the shortest edge.
+    // The smallest angle is opposite the shortest edge.
     const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
     const Vec3& apex = ab <= bc && ab <= ca ? c : bc <= ca ? a : b;
     const Vec3& left = &apex == &a ? b : a;
@@ -38,7 +38,7 @@ struct TriangleShape {
     bool collinear;
 };
 
-/// `origin` is near the mesh, so that volumes far from 0 are not differences of large numbers.
+/// `origin`: a point near the mesh. Volumes relative to it stay accurate for a mesh that is far from 0.
 TriangleShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& origin) {
     const double doubled_area = (b - a).cross(c - a).norm();
     const std::array<double, 3> edges{(b - a).norm(), (c - b).norm(), (a - c).norm()};

@@ -12,13 +12,16 @@ namespace scanmill {
 struct MeshNumbers {
     MeshTopology topology;
     double area = 0;
-    /// By the divergence theorem: positive if triangles are counter-clockwise from outside. Absent unless closed.
+    /// Enclosed volume by the divergence theorem; positive if triangles are counter-clockwise seen from outside. Absent
+    /// if the mesh is not closed.
     std::optional<double> volume;
     /// Triangles whose corners are on one line, decided exactly.
     std::size_t collinear_triangles = 0;
-    /// Smallest angle per triangle, in radians: minimum, 5 % and 50 % quantile. Collinear triangles have 0.
+    /// Minimum, 5 % quantile and median of the triangles' smallest angles, in radians. Collinear triangles count with
+    /// 0.
     double least_angle = 0, angle_p5 = 0, angle_p50 = 0;
-    /// Longest edge over 2 √3 inradii: 1 for an equilateral triangle. Collinear triangles do not count.
+    /// Median, 95 % quantile and maximum of the aspect ratio: the longest edge divided by 2 √3 inradii, 1 for an
+    /// equilateral triangle. Collinear triangles do not count.
     double aspect_p50 = 1, aspect_p95 = 1, largest_aspect = 1;
 };
 

@@ -8,14 +8,13 @@ namespace {
 
 using Filter = Declare<MeasureParams>;
 
-/// The numbers of one direction. `suffix`: "-to-truth" …; `from_where`: its description.
+/// Declares the metrics of one direction. `suffix`: "-to-truth" …; `from_where`: description of the direction.
 void declare_distances(Filter& filter, const std::string& suffix, const std::string& from_where) {
     const auto metric = [&](const char* name, const char* what) {
         filter.metric(name + suffix, Unit::length, std::string(what) + " " + from_where + ".", smaller_is_better);
     };
     metric("mean", "Mean distance");
-    filter.metric("mean-spread" + suffix, Unit::length,
-                  "Standard error of the mean, of the distances " + from_where + ".");
+    filter.metric("mean-spread" + suffix, Unit::length, "Standard error of the mean distance " + from_where + ".");
     metric("rms", "Root of the mean squared distance");
     metric("p50", "Median of the distances");
     metric("p90", "90 % quantile of the distances");
@@ -24,7 +23,7 @@ void declare_distances(Filter& filter, const std::string& suffix, const std::str
     metric("max", "Largest distance at a sample or a vertex,");
 }
 
-/// The numbers of one mesh by itself. `prefix`: "" or "truth-". No value of the truth is better than another.
+/// Declares the metrics of one mesh by itself. `prefix`: "" or "truth-". No value of the truth is better than another.
 void declare_mesh(Filter& filter, const std::string& prefix, const std::string& of) {
     const auto metric = [&](const char* name, Unit unit, const std::string& what,
                             std::same_as<MetricOption> auto... better) {
@@ -32,27 +31,28 @@ void declare_mesh(Filter& filter, const std::string& prefix, const std::string& 
                        : filter.metric(prefix + name, unit, what + " " + of + ".");
     };
     metric("area", Unit::area, "Sum of the triangles' areas");
-    metric("volume", Unit::volume, "Enclosed volume, negative if inside out, only for a closed mesh,");
+    metric("volume", Unit::volume, "Enclosed volume (negative if inside out, only if closed)");
     metric("vertices", Unit::count, "Vertices in a triangle");
     metric("unused-vertices", Unit::count, "Vertices in no triangle", smaller_is_better);
     metric("triangles", Unit::count, "Number of triangles");
     metric("components", Unit::count, "Components connected through edges");
-    metric("genus", Unit::count, "Handles, with holes filled, only for an oriented manifold,");
+    metric("genus", Unit::count, "Number of handles after filling holes (only for an oriented manifold)");
     metric("euler", Unit::count, "Vertices minus edges plus triangles");
-    metric("closed", Unit::boolean, "1 for a closed, oriented manifold,", larger_is_better);
+    metric("closed", Unit::boolean, "Closedness (1 for a closed, oriented manifold, else 0)", larger_is_better);
     metric("boundary-loops", Unit::count, "Connected components of the boundary");
     metric("boundary-edges", Unit::count, "Edges in one triangle", smaller_is_better);
     metric("nonmanifold-edges", Unit::count, "Edges in more than two triangles", smaller_is_better);
     metric("nonmanifold-vertices", Unit::count, "Vertices whose triangles do not form one fan,", smaller_is_better);
-    metric("misoriented-edges", Unit::count, "Edges that two triangles name in the same direction,", smaller_is_better);
-    metric("collinear-triangles", Unit::count, "Triangles whose corners are on one line,", smaller_is_better);
+    metric("misoriented-edges", Unit::count, "Edges with the same direction in two triangles", smaller_is_better);
+    metric("collinear-triangles", Unit::count, "Collinear triangles", smaller_is_better);
     metric("min-angle", Unit::angle, "Smallest angle of a triangle", larger_is_better);
     metric("min-angle-p5", Unit::angle, "5 % quantile of the triangles' smallest angles", larger_is_better);
     metric("min-angle-p50", Unit::angle, "Median of the triangles' smallest angles", larger_is_better);
     metric("aspect-ratio-p50", Unit::number,
-           "Longest edge over 2 sqrt(3) inradii, 1 for equilateral triangles: the median", smaller_is_better);
-    metric("aspect-ratio-p95", Unit::number, "95 % quantile of the same ratios", smaller_is_better);
-    metric("aspect-ratio-max", Unit::number, "Largest of the same ratios", smaller_is_better);
+           "Median aspect ratio (longest edge over 2 sqrt(3) inradii, 1 if equilateral) of the triangles",
+           smaller_is_better);
+    metric("aspect-ratio-p95", Unit::number, "95 % quantile of the triangles' aspect ratios", smaller_is_better);
+    metric("aspect-ratio-max", Unit::number, "Largest aspect ratio of a triangle", smaller_is_better);
 }
 
 Filter declaration() {
@@ -61,10 +61,10 @@ Filter declaration() {
     filter
         .summary("Measures the distance between a mesh and its truth, in both directions, and the quality of the mesh.")
         .source("Aspert, Santa-Cruz, Ebrahimi 2002; Knapitsch et al. 2017 for precision and recall")
-        .ties("Of equally near triangles the first gives the normal.")
-        .not_finite("Refused, with their number and the first of them.")
+        .ties("Of equally near triangles, the first gives the normal.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .in<TriangleMesh>("mesh", "The mesh to measure.")
-        .in<TriangleMesh, PointCloud>("truth", "What the mesh should be: a surface, or points on it.")
+        .in<TriangleMesh, PointCloud>("truth", "The surface that the mesh should have, or points on that surface.")
         .out<Metrics>("metrics", "All metrics, lengths in the unit of the mesh.")
         .out<TriangleMesh>("deviation",
                            "The mesh with the vertex column `distance-to-truth`, negative inside a truth that is a "
@@ -72,22 +72,26 @@ Filter declaration() {
                            by_name)
         .measures("mesh", "truth")
         .adds({"distance-to-truth"})
-        .param("samples", &P::samples, "Points spread over the area of each mesh; of a cloud all points are used.",
+        .param("samples", &P::samples,
+               "Number of points spread over the area of each mesh. Of a cloud, all points are used.",
                at_least(fewest_samples))
         .param("thresholds", &P::thresholds, "Distances that count as near for precision and recall.", above(0))
         .param("self-intersections", &P::self_intersections, "Whether pairs of intersecting triangles are counted.")
         .param("same-frame", &P::same_frame,
-               "Unit and frame are equal for certain: sizes and positions that suggest otherwise only cause a warning.")
+               "Asserts that unit and frame are equal. Sizes and positions that suggest otherwise then only cause a "
+               "warning.")
         .choice("borders", &P::borders,
-                {{"include", P::Borders::include, "They count like all others."},
-                 {"exclude", P::Borders::exclude, "They are left out and counted in beyond-borders."}},
-                "Points of a cloud whose nearest point on the mesh is on its boundary.")
+                {{"include", P::Borders::include, "These points count like all others."},
+                 {"exclude", P::Borders::exclude, "These points are left out and counted in beyond-borders."}},
+                "Whether points of a cloud count if their nearest point on the mesh is on its boundary.")
         .param("certify", &P::certify, "Computes certified bounds of the Hausdorff distance; needs a mesh as truth.")
         .param("gap", &P::gap,
-               "Largest difference of the bounds, as a share of the upper one; hausdorff is searched to this share.",
+               "Largest difference of the bounds, as a share of the upper bound. The search for `hausdorff` uses the "
+               "same share.",
                above(0), below(1))
         .param("most-cuts", &P::most_cuts,
-               "Parts of triangles cut before certify ends with the bounds reached by then.", at_least(1))
+               "Largest number of cuts of triangle parts. After them, certify ends with the bounds reached so far.",
+               at_least(1))
         .metric("hausdorff", Unit::length,
                 "Largest distance in either direction: at samples, at vertices, and where a search finds it.", headline,
                 smaller_is_better)
@@ -99,7 +103,7 @@ Filter declaration() {
         .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.", numbered,
                 larger_is_better)
         .metric("threshold", Unit::length,
-                "The distance of f-score, precision and recall, in the order of `thresholds`.", numbered);
+                "Threshold distance of f-score, precision and recall, in the order of `thresholds`.", numbered);
     declare_distances(filter, "", "over both directions with equal weight");
     declare_distances(filter, "-to-truth", "from the mesh to the truth");
     declare_distances(filter, "-from-truth", "from the truth to the mesh");
@@ -112,7 +116,8 @@ Filter declaration() {
         .metric("normal-consistency-unsigned", Unit::number, "Mean of the same cosines without their signs.",
                 larger_is_better)
         .metric("without-normal", Unit::count,
-                "Samples left out of these means because their nearest triangle has no normal.", smaller_is_better)
+                "Samples left out of normal-consistency because their nearest triangle has no normal.",
+                smaller_is_better)
         .metric("hausdorff-lower", Unit::length, "Certified lower bound of the Hausdorff distance.", smaller_is_better)
         .metric("hausdorff-upper", Unit::length, "Certified upper bound of the Hausdorff distance.", smaller_is_better)
         .metric("certified", Unit::boolean, "1 if the bounds are as close as `gap` requires.", larger_is_better)

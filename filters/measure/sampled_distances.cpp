@@ -16,7 +16,7 @@ namespace scanmill::measuring {
 
 namespace {
 
-/// Entry i: area of triangles 0 … i.
+/// Entry i: total area of the triangles 0 to i.
 Array<double> cumulated_areas(const TriangleMesh& mesh) {
     Array<double> areas(mesh.triangles.size());
     CompensatedSum sum;
@@ -29,7 +29,8 @@ Array<double> cumulated_areas(const TriangleMesh& mesh) {
     return areas;
 }
 
-/// Uniform on the triangle: the square root compensates for its narrowing towards the first corner.
+/// A point with uniform distribution on the triangle. The square root compensates for the triangle's narrowing towards
+/// its first corner.
 Vec3 point_on(const TriangleMesh& mesh, u32 row, Random random) {
     const auto& [a, b, c] = mesh.triangles[row];
     const double away = std::sqrt(random.uniform()), across = random.uniform();
@@ -76,7 +77,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const
     const Array<double> areas = cumulated_areas(mesh);
     assert(count > 0 && areas.back() > 0);
     const double start = Random(random).uniform();
-    // The first triangle that reaches the whole area: no sample is on a triangle without area.
+    // The first triangle at which the whole area is reached. Later triangles have no area and get no sample.
     const auto last = std::ranges::lower_bound(areas, areas.back());
     SurfaceSamples samples;
     samples.positions.resize(count);

@@ -17,15 +17,15 @@ struct SurfaceSamples {
 };
 
 /// Systematic sampling: the triangles' areas are laid end to end, and samples are taken at equal steps from a random
-/// start. So every triangle gets its share of `count` by area, rounded up or down. Within its triangle a sample is
-/// uniform. Triangles without area get none.
-/// Pre: count ≥ 1, an area above 0. Depends on the generator alone, not on the number of threads.
+/// start. So every triangle gets its share of `count` by area, rounded up or down. The position of a sample in its
+/// triangle has a uniform distribution. Triangles without area get no sample.
+/// Pre: count ≥ 1, an area above 0. The result depends on the generator alone, not on the number of threads.
 SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const Random& random, unsigned threads);
 
-/// Removes from `nearest`, keeping the order of the others, the points whose nearest point on the mesh is on a boundary
-/// edge (an edge of only one triangle) or on a vertex of one, within `rounding`. Returns how many were removed.
-/// Edges are compared by vertex index, as in geometry/topology.hpp. If several triangles are equally near, the one in
-/// `nearest` counts.
+/// Removes points from `nearest` whose nearest point on the mesh is on a boundary edge (an edge of only one triangle)
+/// or on an end of one, within `rounding`. The other points keep their order. Returns the number of removed points.
+/// Edges are compared by vertex index, as in topology.hpp. If several triangles are equally near, the one in `nearest`
+/// counts.
 ///
 /// Pre: `nearest` belongs to these points and this mesh. Throws Error if no point would be left.
 /// Cost: O(points + F).
