@@ -25,7 +25,7 @@ void require_one_unit(Inputs inputs) {
             throw Error("the inputs have different units: {} in input 0, {} in input {}", unit_text(first),
                         unit_text(unit), input)
                 .hint(first == LengthUnit::unknown || unit == LengthUnit::unknown
-                          ? "declare the unit of all of them, as `unit: mm` at the workflow's input"
+                          ? "declare the unit of all inputs, for example as `unit: mm` at the workflow's input"
                           : "convert one of them")
                 .remedy(first == LengthUnit::unknown || unit == LengthUnit::unknown ? Remedy::declare_unit
                                                                                     : Remedy::convert_unit);
@@ -57,11 +57,11 @@ void require_sound(Inputs inputs, const MergeParams& params) {
             throw Error("default-uncertainty is {} u; it must be 0 or more", value)
                 .hint("give the scanner's accuracy, or none");
     if (!params.poses.empty() && params.poses.size() != inputs.size())
-        throw Error("there {} {} for {}; every input needs one", by_count(params.poses.size(), "is", "are"),
+        throw Error("there {} {} for {}; every input needs one pose", by_count(params.poses.size(), "is", "are"),
                     count_text(params.poses.size(), "pose", "poses"), count_text(inputs.size(), "input", "inputs"));
 }
 
-/// The numbers of the column of all inputs, checked, end to end.
+/// The numbers in the columns `uncertainty` of all inputs, checked and laid end to end.
 std::vector<double> uncertainties(Inputs inputs) {
     std::vector<double> values;
     for (std::size_t input = 0; input < inputs.size(); ++input) {
@@ -92,18 +92,18 @@ void warn_of_names(Inputs inputs, Context& context) {
     const auto other = std::ranges::find_if(inputs, differs);
     if (other == inputs.end()) return;
     context.warn(fmt::format(
-        "{} of {} inputs have another frame than '{}', that of the first input, such as input {} in '{}'; "
-        "without poses all are assumed to be in the same frame",
+        "{} of {} inputs have another frame than '{}', the frame of the first input; one of them is input {} in '{}'. "
+        "Without poses, all inputs are assumed to be in the same frame",
         std::ranges::count_if(inputs, differs), inputs.size(), first, other - inputs.begin(), (*other)->frame.name));
 }
 
-/// p goes to rotation p + shift.
+/// Maps p to rotation p + shift.
 struct Motion {
     Eigen::Matrix3d rotation;
     Vec3 shift;
 };
 
-/// Poses, or origins far apart, can make a cloud larger than the supported range of scans.
+/// Throws Error if the points exceed the supported range of scans, as poses or origins far apart can make them do.
 void require_supported_size(std::span<const Vec3> positions) {
     constexpr double largest_size = 1e9;
     const BoundingBox box = bounding_box(positions);
@@ -113,11 +113,12 @@ void require_supported_size(std::span<const Vec3> positions) {
             .hint("check the poses, their unit, and that the inputs are in one coordinate system");
 }
 
-/// All positions end to end, with the frame of the result and no columns. A pose maps world coordinates: origin o plus
-/// position p goes to R (o + p) + t, computed as R p + (R o + t - origin of the result), so that large numbers cancel
-/// before a position is added. Without poses positions are only moved to the origin of the first cloud.
-/// Pre: `poses` is empty or as long as `clouds`, which are finite and of one unit. Throws Error for a pose in a known
-/// unit when that of the clouds is unknown, and when the moved points exceed the supported range.
+/// All positions end to end, with the frame of the result and no columns. A pose maps world coordinates: for a position
+/// p in a frame with origin o it gives R (o + p) + t. This is computed as R p + (R o + t - origin of the result), so
+/// large numbers cancel before a position is added. Without poses, positions are only moved to the origin of the first
+/// cloud.
+/// Pre: `poses` is empty or as long as `clouds`; the clouds are finite and of one unit. Throws Error if a pose has a
+/// known unit and the clouds have an unknown one, and if the moved points exceed the supported range.
 PointCloud placed_points(Inputs clouds, std::span<const RigidTransform> poses) {
     PointCloud result;
     result.frame = clouds.front()->frame;
@@ -164,8 +165,8 @@ PointCloud placed_points(Inputs clouds, std::span<const RigidTransform> poses) {
     return result;
 }
 
-/// The inputs with the default where they have no uncertainty. A missing column is float32 if an input has one of
-/// float32, so that equal numbers are ties.
+/// The inputs, with the default uncertainty for points without one. A missing column is float32 if any input has a
+/// float32 column, so that equal numbers are ties.
 std::vector<std::shared_ptr<const PointCloud>> with_default(Inputs inputs, double value) {
     ScalarType type = ScalarType::float64;
     for (const auto& input : inputs)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The two larger steps of merge(), which states the rules: the columns of the result, and the choice of the points
-/// that are kept where clouds overlap.
+/// The two larger steps of merge(): the columns of the result, and the choice of the points that are kept where clouds
+/// overlap. The rules are in merge.hpp.
 
 #include <memory>
 #include <span>
@@ -12,18 +12,18 @@
 
 namespace scanmill::merging {
 
-/// The cloud with a column `uncertainty` of lengths: `value` where it has NaN, and everywhere, as `type` (float32 or
-/// float64), where the cloud has no such column. A column of lists or of several components stays as it is.
+/// The cloud with a column `uncertainty` of lengths. NaN in an existing column becomes `value`. A missing column is
+/// added, with `value` in all rows and of type `type` (float32 or float64). A column of lists or of several components
+/// stays as it is.
 PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, double value);
 
 /// The columns of the clouds, end to end, in the order in which their names first appear, `source` last. Warns about
-/// every column that is left out or changed. Pre: `poses` is empty or as long as `clouds`, of which there is at least
-/// one.
+/// every column that is left out or changed. Pre: at least one cloud; `poses` is empty or as long as `clouds`.
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
                            std::span<const RigidTransform> poses, Context& context);
 
-/// Rows that are kept, ascending; all of them when `within` is 0. `source` is the number of the cloud of each row; rows
-/// of one cloud are contiguous, clouds ascend. `preference` is empty or has a number per row, the smaller the better.
+/// Rows that are kept, ascending; all rows if `within` is 0. `source`: the number of each row's cloud; rows are ordered
+/// by cloud. `preference`: empty, or a number for each row; smaller is better.
 Array<u32> without_overlap(std::span<const Vec3> positions, std::span<const u32> source,
                            std::span<const double> preference, double within, Context& context);
 

@@ -65,7 +65,7 @@ Column joined(std::span<const Column> parts) {
 const std::string newest = "source";
 const std::string older = "-of-source";
 
-/// "source", "source-of-source" …
+/// Whether the name is "source", "source-of-source" and so on.
 bool names_a_source(const std::string& name) {
     if (!name.starts_with(newest)) return false;
     std::string_view rest = std::string_view(name).substr(newest.size());
@@ -73,7 +73,7 @@ bool names_a_source(const std::string& name) {
     return rest.empty();
 }
 
-/// The column under its name in the result, rotated when it has directions.
+/// The column with its name in the result. Directions are rotated by the pose.
 Column placed(const Column& column, const RigidTransform* pose) {
     if (names_a_source(column.name())) return column.renamed(column.name() + older);
     return pose ? turned(column, pose->rotation) : column;
@@ -89,7 +89,7 @@ bool is_floating(const Column& column) {
     return !column.is_list() && (column.type() == ScalarType::float32 || column.type() == ScalarType::float64);
 }
 
-/// `rows` rows of one number, with the name, type, components and exponent of `like`.
+/// A column that has the same number in `rows` rows, and the name, type, components and exponent of `like`.
 Column constant(const Column& like, std::size_t rows, double value) {
     const auto filled = [&](auto zero) {
         Array<decltype(zero)> values(rows * like.components(), static_cast<decltype(zero)>(value));
@@ -120,10 +120,10 @@ public:
     }
 
 private:
-    /// One column per cloud, suitable for joined(). Empty, with a warning, when they cannot be joined.
+    /// One column per cloud, suitable for joined(). Empty, with a warning, if the columns cannot be joined.
     std::vector<Column> parts_of(const std::string& name) {
         std::vector<Column> parts;
-        std::vector<std::size_t> inputs;  // that have it
+        std::vector<std::size_t> inputs;  // inputs that have the column
         for (std::size_t input = 0; input < tables_.size(); ++input)
             if (const Column* column = tables_[input].find(name)) {
                 parts.push_back(*column);

@@ -10,9 +10,9 @@ namespace scanmill::merging {
 
 namespace {
 
-/// A growing set of points that answers whether one of another source is within a fixed distance.
+/// A growing set of points, with a test whether a point of another source is within a fixed distance.
 ///
-/// The points of a cell are grouped by source, so that those of the own source cost no time.
+/// The points of a grid cell are grouped by source, so the test takes no time for points of the same source.
 class SourceGrid {
 public:
     /// The set is empty at first. `positions` and `source` must outlive it. Pre: within > 0.
@@ -37,7 +37,8 @@ public:
         groups_[group].first_row = row;
     }
 
-    /// Whether a point in the set of another source than `row` has a squared distance of at most within² to it.
+    /// Whether the set contains a point of another source at a squared distance of at most within² from the point
+    /// `row`.
     bool has_foreign_neighbour(u32 row) const {
         const Vec3& point = positions_[row];
         return grid_.any_near(point, [&](u32 cell) {

@@ -18,25 +18,26 @@ SCANMILL_FILTER() {
     return Declare<P>("merge", 2)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
-        .ties("If points overlap and have equal preference, the one of the earlier input is kept.")
-        .not_finite("Refused, with the input, their number and the first of them.")
+        .ties("If points overlap and have equal preference, the point of the earlier input is kept.")
+        .not_finite("Refused; the message gives the input, their number and the first one.")
         .adds({"source", "uncertainty"})
-        .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
+        .in<PointCloud>("points", "At least one cloud; all have finite coordinates and the same unit.", list)
         .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file with the pose of each input.", word("none"))
         .choice("prefer", &P::prefer,
                 {{"none", P::Prefer::none, "The point of the earlier input."},
                  {"lower-uncertainty", P::Prefer::lower_uncertainty,
-                  "The point with the smaller number in its column `uncertainty`; of equal ones that of the earlier "
-                  "input."}},
+                  "The point with the smaller number in its column `uncertainty`; with equal numbers, the point of the "
+                  "earlier input."}},
                 "Which of two points is kept where inputs overlap.")
         .param("within", &P::within, "Points of different inputs within this distance overlap; 0 keeps all.",
                at_least(0))
         .param("default-uncertainty", &P::default_uncertainty,
-               "Uncertainty of points that have none, because their input lacks the column or it is NaN there.",
+               "Uncertainty of points whose input lacks the column `uncertainty`, and of points with NaN in it.",
                word("none"), at_least(0))
         .metric("points", Unit::count, "Points that were kept.")
-        .metric("dropped", Unit::count, "Points that were dropped for one of another input.", headline)
+        .metric("dropped", Unit::count, "Points that were dropped because a point of another input overlaps them.",
+                headline)
         .run([](const Inputs& inputs, P params, Context& context) {
             const auto clouds = inputs.list<PointCloud>("points");
             if (params.poses_file) {

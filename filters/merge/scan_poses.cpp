@@ -47,7 +47,7 @@ std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<con
             throw Error("there is no pose for input {}, whose frame is called '{}'; the file has poses for {}{}", input,
                         name, enumerated(names_of(poses)), did_you_mean(name, names_of(poses)));
         if (std::ranges::count_if(poses, fits) > 1)
-            throw Error("there are {} poses for input {}, whose frame is called '{}'; one is needed",
+            throw Error("there are {} poses for input {}, whose frame is called '{}'; exactly one is needed",
                         std::ranges::count_if(poses, fits), input, name);
         if (const auto [earlier, is_new] = used.emplace(&*found, input); !is_new)
             context.warn(fmt::format("inputs {} and {} are both in the frame '{}' and use the same pose, that of '{}'",

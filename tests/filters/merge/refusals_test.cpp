@@ -68,7 +68,7 @@ TEST(MergeRefusals, DistanceBelowZeroOrInfinite_IsRefused) {
 
 TEST(MergeRefusals, AnotherNumberOfPoses_NamesBoth) {
     EXPECT_EQ(refusal({point, point}, posed({RigidTransform{}})).sentence(),
-              "there is 1 pose for 2 inputs; every input needs one");
+              "there is 1 pose for 2 inputs; every input needs one pose");
 }
 
 TEST(MergeRefusals, PosesInAUnitThatTheScansLack_AreRefusedWithAHint) {
