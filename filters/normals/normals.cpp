@@ -27,16 +27,16 @@ namespace {
 using Method = NormalsParams::Method;
 using Orient = NormalsParams::Orient;
 
-constexpr double least_flatness = 1e-6;  // for neighbours that determine a plane
+constexpr double least_flatness = 1e-6;  // least flatness of neighbours that determine a plane
 constexpr double grazing_cosine = 0.08715574274765817;  // cosine of 85 degrees
 constexpr double doubtful_share = 0.05;
 constexpr double doubtful_variation = 0.1;  // a hemisphere has 1/9, a ball 1/3
 constexpr std::size_t chunk = 1 << 12;
 
-/// The normals of the positions of a tree, and which of them are neighbours.
+/// The normals at the positions of a tree, and the nearest neighbours of each position.
 struct NormalField {
     std::size_t each = 0;
-    /// The nearest of position i are [i each, (i + 1) each).
+    /// The neighbours of position i are in the rows [i each, (i + 1) each).
     Array<u32> nearest;
     Array<Vec3> directions;
     std::vector<u8> undetermined;
@@ -98,7 +98,7 @@ std::vector<signed char> sides_of_sensor(const PointCloud& cloud, const PointTre
     return sides;
 }
 
-/// The neighbours of every position in both directions.
+/// For every position, its nearest positions and the positions that have it among their nearest.
 class Graph {
 public:
     explicit Graph(const NormalField& field)
@@ -124,13 +124,13 @@ private:
     Lists<> reverse_;
 };
 
-/// Components, and their positions, that have their side from their highest position alone. The largest component of
-/// all does not count.
+/// Number of components whose side is decided by their highest position alone, and number of positions in them. The
+/// largest of all components does not count.
 struct Guessed {
     std::size_t components = 0, positions = 0;
 };
 
-/// Orients the highest position of each component that has no side yet. `count`: number of components.
+/// Orients the highest position of each component without an oriented position. `count`: number of components.
 Guessed seed_components(std::span<const Vec3> positions, const NormalField& field, DisjointSets& components,
                         std::vector<signed char>& sides, std::size_t& count) {
     struct Component {
@@ -168,7 +168,7 @@ Guessed seed_components(std::span<const Vec3> positions, const NormalField& fiel
     return {guessed.components - largest_guessed.components, guessed.positions - largest_guessed.positions};
 }
 
-/// Prim's algorithm from all positions that have a side.
+/// Spreads sides to the other positions by Prim's algorithm, starting from all positions that have a side.
 void spread(const NormalField& field, const Graph& graph, std::vector<signed char>& sides, Context& context) {
     struct Link {
         double weight;
@@ -213,7 +213,7 @@ void spread(const NormalField& field, const Graph& graph, std::vector<signed cha
     }
 }
 
-/// Whether the normals of most neighbours are on the other side.
+/// By position: 1 if its normal is undetermined, or if the normals of most neighbours are on the other side.
 std::vector<u8> doubtful_positions(const NormalField& field, const std::vector<signed char>& sides, bool oriented,
                                    Context& context) {
     std::vector<u8> doubtful(field.undetermined);
@@ -248,7 +248,7 @@ PointCloud with_normals(const PointCloud& cloud, std::span<const u32> index_of_r
 void require_usable(const PointCloud& cloud, const NormalsParams& params) {
     if (params.neighbours < 2 || params.neighbours > 1000)
         throw Error("neighbours must be from 2 to 1000; it is {}", params.neighbours)
-            .hint("16 suits most scans; more for noisy ones");
+            .hint("16 suits most scans; noisy scans need more");
     if (params.scanner && (params.orient == Orient::tree || params.orient == Orient::none))
         throw Error("scanner is given, but orient is `{}`, which does not use it",
                     params.orient == Orient::tree ? "tree" : "none")
@@ -262,11 +262,11 @@ const Column* sensor_column(const PointCloud& cloud, const NormalsParams& params
     if (params.scanner || params.orient == Orient::tree || params.orient == Orient::none) return nullptr;
     const Column* approach = cloud.columns.find("approach");
     if (approach && approach->components() != 3)
-        throw Error("the column 'approach' has {} per point; 3 are needed, a direction to the scanner",
+        throw Error("the column 'approach' has {} per point; a direction to the scanner needs 3 numbers",
                     approach->is_list() ? "a list" : count_text(approach->components(), "number", "numbers"))
             .hint("give the scanner's position by `scanner`, or `orient: tree`");
     if (!approach && params.orient == Orient::sensor)
-        throw Error("orient is `sensor`, but the scan has no column 'approach' and no position is given")
+        throw Error("orient is `sensor`, but the scan has no column 'approach' and no scanner's position is given")
             .hint("give the scanner's position by `scanner: [0 u, 0 u, 10 u]`, or `orient: tree`");
     return approach;
 }
@@ -275,8 +275,8 @@ void report_doubts(const NormalsResult& result, const Guessed& guessed, std::siz
     const double count = static_cast<double>(result.points.size());
     if (static_cast<double>(result.doubtful) > doubtful_share * count)
         context.doubt(fmt::format(
-            "{} of {} points ({:.0f} %) have a doubtful normal: their neighbours lie on a line, or most of their "
-            "normals are on the other side; more neighbours, or outlier-removal before, may help",
+            "{} of {} points ({:.0f} %) have a doubtful normal: their neighbours lie on a line, or most neighbours "
+            "have normals on the other side. More neighbours, or outlier-removal before this step, may help",
             result.doubtful, result.points.size(), 100 * static_cast<double>(result.doubtful) / count));
     const double share = static_cast<double>(guessed.positions) / static_cast<double>(positions);
     if (share > doubtful_share)
@@ -288,7 +288,7 @@ void report_doubts(const NormalsResult& result, const Guessed& guessed, std::siz
             by_count(guessed.components, "its highest point", "their highest points"), 100 * share));
 }
 
-/// Doubts neighbours that surround the scan, or fill a volume.
+/// Doubts the result if the neighbours of most positions surround the scan, or fill a volume.
 void doubt_variation(Array<double> variation, std::size_t neighbours, Context& context) {
     if (const double share = median(variation); share > doubtful_variation)
         context.doubt(fmt::format(

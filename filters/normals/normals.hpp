@@ -17,61 +17,60 @@ namespace scanmill {
 struct NormalsParams {
     enum class Method {
         pca,  ///< normal of the plane that best fits the point and its neighbours
-        jet   ///< normal at the point of the polynomial of degree two that fits them best (see jet.hpp)
+        jet   ///< normal, at the point, of the best fitting polynomial of degree two (see jet.hpp)
     };
     Method method = Method::pca;
-    /// Number of nearest other positions, from 2 to 1000; all others if there are fewer. The point itself counts in
-    /// addition; its duplicates do not count.
+    /// Number of nearest other positions that a normal is estimated from; 2 to 1000. If there are fewer, all others.
+    /// The point itself is used in addition; its duplicates do not count.
     u32 neighbours = 16;
     enum class Orient {
         automatic,  ///< as sensor if there is a scanner's position or a column `approach`, else as tree
         sensor,  ///< towards the scanner
         known,  ///< as sensor; without a scanner's position or a column `approach`, the points stay as they are
-        tree,  ///< as the neighbours, along a spanning tree
-        none  ///< one of the two, by with_positive_sign()
+        tree,  ///< consistent with the neighbours, along a spanning tree
+        none  ///< either of the two sides, by with_positive_sign()
     };
     Orient orient = Orient::automatic;
-    /// The scanner's position: x, y, z in the scan's coordinates, frame.origin included. Empty: the column `approach`.
-    /// Not with Orient::tree or none.
+    /// The scanner's position: x, y, z in the scan's coordinates, frame.origin included. If it is empty, the column
+    /// `approach` is used. Not allowed with Orient::tree and Orient::none.
     std::optional<std::vector<Length>> scanner;
 };
 
 struct NormalsResult {
-    /// The input with the column `normal` (3 × float32, unit length). An older one is replaced, with a warning. The
-    /// input itself with Orient::known, if no scanner is known.
+    /// The input with the column `normal` (3 × float32, unit length). An existing column of that name is replaced, with
+    /// a warning. With Orient::known and without a scanner, the input itself.
     PointCloud points;
-    /// Points whose side is decided: all, or with Orient::none 0.
+    /// Number of points whose side is decided: all points; 0 with Orient::none, and if the input stays as it is.
     std::size_t oriented = 0;
-    /// Number of those `oriented` normals that were turned towards the scanner.
+    /// Number of points whose normals were turned towards the scanner.
     std::size_t by_sensor = 0;
-    /// Points whose normal or whose side is doubtful.
+    /// Number of points whose normal or whose side is doubtful.
     std::size_t doubtful = 0;
     /// Connected components of the neighbourhoods.
     std::size_t components = 0;
 };
 
-/// One normal for each distinct position; duplicates share it.
+/// Estimates one normal for each distinct position; duplicates share it.
 ///
-/// 1. Normal. By `method` from the position and its `neighbours` nearest other positions; ties: the
-///    lower by x, then y, then z. A jet that is not determined is the plane.
-/// 2. Sensor. Every point has a direction to the scanner: its column `approach` (3 numbers, of any length above 0) or
-///    that to `scanner`. A normal is turned to the side of the mean direction of the points at its position, unless
-///    they are nearly perpendicular (the angle between them is above 85 degrees), or the direction is missing (0 or
-///    NaN).
-/// 3. Tree. Two positions are neighbours if one is among the `neighbours` nearest of the other. Starting from all
-///    positions with a side, the next is always the one with the least 1 - |cosine| to the normal of a neighbour that
-///    has a side (ties: the lower position, then the lower neighbour), and takes its side. A component without
-///    any starts at its highest point (by z; ties: the lowest by x, then y), whose normal is turned upwards, or
-///    if it is horizontal away from the component's centroid.
+/// 1. Normal. `method` estimates the normal from the position and its `neighbours` nearest other positions. Of equally
+///    near positions, the lower by x, then y, then z is nearer. A jet that is not determined is replaced by the plane.
+/// 2. Sensor. Every point has a direction to the scanner: its column `approach` (3 numbers, of any length above 0), or
+///    the direction to `scanner`. A normal is turned to the side of the mean direction of the points at its position.
+///    It is not turned if the angle between them is above 85 degrees, or if the direction is missing (0 or NaN).
+/// 3. Tree. Two positions are neighbours if one is among the `neighbours` nearest of the other. A spanning tree grows
+///    from all positions with a side. The next position is the one with the least 1 - |cosine| between its normal and
+///    the normal of a neighbour in the tree (ties: the lower position, then the lower neighbour). It takes the side of
+///    that neighbour. A component without any side starts at its highest point (by z; ties: the lowest by x, then y).
+///    The normal there is turned upwards, or away from the component's centroid if it is horizontal.
 ///
 /// A point is doubtful if its neighbours lie on one line, so that they do not determine a plane (their flatness is
-/// below 1e-6, see covariance.hpp), or if the sides of most of its neighbours' normals disagree with its own (a
-/// negative cosine), as at sharp edges and where the tree erred.
+/// below 1e-6, see covariance.hpp). It is also doubtful if most of its neighbours' normals have a negative cosine with
+/// its own, as at sharp edges and where the tree is wrong.
 ///
 /// Throws Error for fewer than 3 distinct positions, positions on one line, a NaN or infinite coordinate, a parameter
 /// out of range, Orient::sensor without directions, and a column `approach` that is not 3 numbers. Doubts its result if
-/// more than 5 % of the points are doubtful, and if components with more than 5 % of the positions beside the largest
-/// are turned by their highest points alone.
+/// more than 5 % of the points are doubtful. Also doubts it if the highest point alone decides the side of components
+/// that hold more than 5 % of the positions; the largest component does not count.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; the same normals for any order of the
 /// points. Cost: O(n log n) time; about 90 + 8 `neighbours` bytes per point beside the result.

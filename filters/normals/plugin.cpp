@@ -10,8 +10,8 @@ SCANMILL_FILTER() {
         .summary("Estimates the normal at every point, and turns it to the outside.")
         .source("Hoppe, DeRose, Duchamp, McDonald, Stuetzle 1992; Cazals, Pouget 2005 for `jet`")
         .ties(
-            "Equally near points: the lower in order of x, then y, then z is nearer; equal links of the tree: the "
-            "one to the lower point comes first.")
+            "Of equally near points, the lower in order of x, then y, then z is nearer. Of equal links of the tree, "
+            "the one to the lower point comes first.")
         .not_finite("Refused; the message gives their number and the first one.")
         .adds({"normal"})
         .in<PointCloud>("points",
@@ -35,19 +35,20 @@ SCANMILL_FILTER() {
                   "As `sensor` if there is a column `approach` or a `scanner`, else as "
                   "`tree`."},
                  {"sensor", P::Orient::sensor,
-                  "Towards the scanner; where the surface is seen edge-on, as the neighbours."},
+                  "Towards the scanner; where the surface is seen edge-on, consistent with the neighbours."},
                  {"known", P::Orient::known,
                   "As `sensor` if there is a column `approach` or a `scanner`; else the points stay as they are, for "
                   "steps that can do without normals."},
                  {"tree", P::Orient::tree,
-                  "As the neighbours, along a spanning tree from the highest point of every component, where up is "
-                  "outside."},
-                 {"none", P::Orient::none, "Any of the two sides."}},
+                  "Consistent with the neighbours, along a spanning tree. The tree starts at the highest point of "
+                  "every component, where up is outside."},
+                 {"none", P::Orient::none, "Either of the two sides."}},
                 "Which side is outside.")
         .param("scanner", &P::scanner,
                "x, y, z of the scanner, in the coordinates of the file, for a scan from one position.", size(3))
-        .metric("oriented", Unit::count,
-                "Points whose side is decided: all; none with `orient: none`, and if points stay as they are.")
+        .metric(
+            "oriented", Unit::count,
+            "Points whose side is decided: all points; none with `orient: none`, and if the points stay as they are.")
         .metric("by-sensor", Unit::count, "Points that are turned towards the scanner.")
         .metric("doubtful", Unit::count,
                 "Points whose neighbours lie on one line, or most of whose neighbours have normals on the other side.",
