@@ -26,15 +26,16 @@ namespace {
 using Method = OutlierRemovalParams::Method;
 
 constexpr u32 most_neighbours = 1000;
-/// A point hovers if its nearest position and its plane are farther away than this share of its mean distance.
+/// A point hovers if its nearest position and the plane of its neighbours are both farther away than this share of its
+/// mean distance to them.
 constexpr double hovering_share = 0.6;
 /// Largest surface variation of a flat suspect and its neighbours.
 constexpr double flat_variation = 0.0125;
-/// Mutual neighbours are connected up to this many limits.
+/// Mutual neighbours are connected up to a distance of this many limits.
 constexpr double reach = 2;
-/// Share of the points above which their removal is reported.
+/// The result is doubtful if more than this share of the points are outliers.
 constexpr double doubtful_share = 0.1;
-/// Equal distances differ by rounding; such differences make no suspects.
+/// Relative tolerance at the limit: equal distances may differ by rounding, and none of them becomes a suspect.
 constexpr double rounding = 1e-12;
 
 constexpr std::size_t chunk_size = std::size_t(1) << 14;
@@ -58,18 +59,19 @@ void require_valid(const PointCloud& cloud, const OutlierRemovalParams& params) 
         throw Error("min-component is {}; it must be from 0 to 1", share).hint("`0.1 %` fits most scans");
 }
 
-/// The distinct positions of a cloud with their nearest others.
+/// The distinct positions of a cloud with their nearest neighbours.
 struct Neighbourhoods {
     PointTree tree;
-    /// Number of nearest positions of every position: `neighbours`, or all others.
+    /// Number of neighbours of every position: `neighbours`, or all other positions if there are fewer.
     std::size_t each;
-    /// #positions × each, by distance.
+    /// The neighbours of each position, nearest first: #positions × each.
     Array<u32> nearest;
     /// Number of points at every position.
     Array<u32> repeats;
-    /// Per position, what the method compares with its limit.
+    /// By position: the distance that the method compares with its limit.
     Array<double> distances;
-    /// Median distance from a position to the nearest other one; 0 for one position.
+    /// Median distance from a position to the nearest other one. 0 for one position, and if `radius` is not in
+    /// `spacing`.
     double spacing = 0;
 
     std::span<const Vec3> positions() const { return tree.positions(); }
@@ -136,8 +138,8 @@ Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemo
     return result;
 }
 
-/// Mean plus `factor` standard deviations of the distances of all points; if `repeated`, of those up to the limit,
-/// until the limit excludes no more of them.
+/// Mean plus `factor` standard deviations of the distances of all points. If `repeated`, the limit is computed again
+/// from the points up to the limit, until no more points are excluded.
 double statistical_limit(const Neighbourhoods& all, double factor, bool repeated) {
     struct Item {
         double distance;
@@ -147,7 +149,8 @@ double statistical_limit(const Neighbourhoods& all, double factor, bool repeated
     for (std::size_t i = 0; i < items.size(); ++i) items[i] = {all.distances[i], all.repeats[i]};
     std::ranges::sort(items, {}, &Item::distance);
 
-    // Sums over the items up to each one. Distances are taken from the least, so that equal ones deviate by exactly 0.
+    // Sums over the items up to each one. The least distance is subtracted, so that equal distances deviate by exactly
+    // 0.
     struct Sums {
         double points = 0, distances = 0, squares = 0;
     };
@@ -211,7 +214,7 @@ Array<State> states_of(const Neighbourhoods& all, double limit, bool connected, 
     return states;
 }
 
-/// Unites the positions that are connected and one of which is among the nearest of the other.
+/// Unites connected positions of which one is among the nearest of the other.
 void unite_neighbours(const Neighbourhoods& all, std::span<const State> states, double limit, double radius,
                       DisjointSets& sets, Context& context) {
     const std::span<const Vec3> positions = all.positions();
@@ -231,7 +234,8 @@ void unite_neighbours(const Neighbourhoods& all, std::span<const State> states, 
     }
 }
 
-/// The set of every position, and the number of positions in the set at its representative.
+/// `label`: by position, the representative of its set. `size`: the number of positions in a set, at its
+/// representative.
 struct Components {
     Array<u32> label, size;
 
@@ -241,7 +245,7 @@ struct Components {
     u32 largest() const { return static_cast<u32>(std::ranges::max_element(size) - size.begin()); }
 };
 
-/// Passed positions of one component in one cell of a grid.
+/// A passed position with its component and its grid cell.
 struct Cluster {
     u32 label;
     Vec3 cell;
@@ -261,9 +265,9 @@ std::vector<Cluster> clusters_of(const Neighbourhoods& all, std::span<const Stat
     return clusters;
 }
 
-/// Unites passed positions within the radius that are not among each other's nearest: groups of many points side by
-/// side. Searches from all components but the largest, once per cell, because a dense group can be smaller than the
-/// radius.
+/// Unites passed positions within the radius that are not among each other's nearest, as in groups of many points side
+/// by side. Searches from all components but the largest. A dense group can be smaller than the radius, so there is one
+/// search per grid cell.
 void unite_groups(const Neighbourhoods& all, std::span<const State> states, double radius, DisjointSets& sets,
                   Context& context) {
     if (!(radius > 0)) return;
@@ -310,7 +314,7 @@ void require_kept(std::size_t kept, std::size_t points, const OutlierRemovalPara
                   std::size_t largest, std::size_t positions) {
     if (kept > 0) return;
     if (params.min_component.value() == 0)
-        throw Error("{0} of {0} points are outliers: none has {1} within {2:.4g} u; nothing is left", points,
+        throw Error("{0} of {0} points are outliers: no point has {1} within {2:.4g} u; nothing is left", points,
                     count_text(params.neighbours, "other point", "other points"), limit)
             .hint("enlarge radius, or lower neighbours");
     throw Error(

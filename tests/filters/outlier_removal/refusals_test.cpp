@@ -68,7 +68,7 @@ TEST(OutlierRemovalRefusals, ShareOutOfRange_IsRefused) {
 
 TEST(OutlierRemovalRefusals, AllPointsTooFarFromEachOther_NothingWouldBeLeft) {
     EXPECT_EQ(refusal(three, by_radius(1, 0.5)),
-              "3 of 3 points are outliers: none has 1 other point within 0.5 u; nothing is left");
+              "3 of 3 points are outliers: no point has 1 other point within 0.5 u; nothing is left");
     EXPECT_THAT(refusal(on_a_line({4}), by_radius(1, 0.5)), HasSubstr("1 of 1 points are outliers"));
 }
 
