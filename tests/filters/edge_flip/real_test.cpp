@@ -54,7 +54,7 @@ TEST(EdgeFlipWarns, OfVerticesOfTheMergedDragonThatRepeatAPosition) {
     Context context;
     const EdgeFlipResult result = edge_flip(*mesh, {}, context);
     EXPECT_THAT(context.warnings(),
-                testing::Contains(testing::HasSubstr("2100 vertices have the position of another one")));
+                testing::Contains(testing::HasSubstr("2100 vertices have the position of another")));
     expect_laws(*mesh, result, {});
 }
 

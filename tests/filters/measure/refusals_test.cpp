@@ -124,9 +124,10 @@ TEST(MeasureFrames, DifferentOrigins_ArePartOfThePositions) {
 }
 
 TEST(MeasureFrames, AnotherUnit_IsNoticedBySize) {
-    EXPECT_EQ(refusal(brick(), brick(25.4)),
-              "the mesh is 2 x 3 x 5 u, the truth 50.8 x 76.2 x 127 u: 25.4 times as large in every direction, as if "
-              "the truth were in mm and the mesh in in");
+    EXPECT_EQ(
+        refusal(brick(), brick(25.4)),
+        "the mesh is 2 x 3 x 5 u, the truth 50.8 x 76.2 x 127 u: one is 25.4 times as large as the other in every "
+        "direction, as if the truth were in mm and the mesh in in");
     EXPECT_THAT(refusal(brick(), brick(0.001)), HasSubstr("as if the mesh were in mm and the truth in m"));
     EXPECT_THAT(refusal(brick(10.2), brick()), HasSubstr("as if the mesh were in mm and the truth in cm"));
     EXPECT_THAT(refusal(brick(2.54), brick()), HasSubstr("as if the mesh were in cm and the truth in in"));
