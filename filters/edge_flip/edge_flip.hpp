@@ -68,7 +68,7 @@ struct EdgeFlipResult {
 /// 1. it has two triangles and is not one of the mesh's sharp edges;
 /// 2. the other diagonal is not an edge yet;
 /// 3. the two triangles, unfolded into a plane, form a convex quadrilateral: their angles at each end of the edge sum
-///    to less than π - 1e-6 (otherwise the other diagonal is outside, and the edge does not count as blocked);
+///    to less than π - 1e-6. Otherwise the other diagonal is outside, and the edge does not count as blocked;
 /// 4. the criterion is fulfilled;
 /// 5. the new triangles do not fold: their normals are less than 90° from each other, and from the sum of the old
 ///    normals weighted by area. The largest dihedral deviation at the five edges of the two triangles is at most

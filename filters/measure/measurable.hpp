@@ -26,8 +26,8 @@ void require_surface(const TriangleMesh& mesh, std::string_view name);
 Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec3>& positions);
 
 /// Throws Error if the sizes or positions of two bounding boxes (in the same frame) show that unit or frame differ:
-///  - every extent of one box is k times that of the other, within 5 %, where k is the ratio of two units (10 for mm
-///    and cm, 25.4 for in and mm, 1000 for mm and m …). Extents are compared in ascending order, because a box may be
+///  - every extent of one box is k times that of the other, within 5 %. Here k is the ratio of two units (10 for mm and
+///    cm, 25.4 for in and mm, 1000 for mm and m …). Extents are compared in ascending order, because a box may be
 ///    turned. An extent below a tenth of the diagonal in both boxes does not count;
 ///  - one diagonal is more than 30 times the other. This is allowed if the truth is smaller and `truth_may_be_part`;
 ///  - the boxes are more than a tenth of the longer diagonal apart.

@@ -39,9 +39,9 @@ struct MeasureParams {
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).
     Ratio gap = Ratio::percent(1);
-    /// Whether points of a cloud are used if their nearest point on the mesh is on a boundary edge (an edge of only one
-    /// triangle) or on an end of one. The distance of such a point shows where the mesh ends, not how well it fits.
-    /// `exclude` needs points as truth.
+    /// Whether points of a cloud are used if their nearest point on the mesh is on its boundary: on an edge of only one
+    /// triangle, or on an end of such an edge. The distance of such a point shows where the mesh ends, not how well it
+    /// fits. `exclude` needs points as truth.
     Borders borders = Borders::include;
     /// Largest number of cuts of triangle parts. After them, the refinement ends with the bounds reached so far.
     u64 most_cuts = 10'000'000;
@@ -69,7 +69,7 @@ struct Measurement {
     /// Number of points of a cloud that from_truth, and every number derived from it, leaves out. Absent unless borders
     /// are excluded.
     std::optional<std::size_t> beyond_borders;
-    /// Both directions with equal weight; for a cloud, equal to from_truth.
+    /// The numbers of both directions with equal weight; for a cloud, equal to from_truth.
     DistanceNumbers both;
     /// The largest distance found at a sample, at a vertex, or by largest_distance(); absent for a cloud. Not above the
     /// true Hausdorff distance, except for rounding, and not below certified->lower.

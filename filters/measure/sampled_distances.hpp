@@ -22,8 +22,8 @@ struct SurfaceSamples {
 /// Pre: count ≥ 1, an area above 0. The result depends on the generator alone, not on the number of threads.
 SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const Random& random, unsigned threads);
 
-/// Removes points from `nearest` whose nearest point on the mesh is on a boundary edge (an edge of only one triangle)
-/// or on an end of one, within `rounding`. The other points keep their order. Returns the number of removed points.
+/// Removes points from `nearest` whose nearest point on the mesh is within `rounding` of the boundary. The boundary
+/// consists of the edges of only one triangle. The other points keep their order. Returns the number of removed points.
 /// Edges are compared by vertex index, as in topology.hpp. If several triangles are equally near, the one in `nearest`
 /// counts.
 ///

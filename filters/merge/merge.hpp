@@ -42,9 +42,10 @@ struct MergeResult {
 /// The points of all inputs, in input order, without the dropped ones.
 ///
 /// Dropping: points are visited in the order of (preference, input, row). With lower_uncertainty, the preference is the
-/// value in the column `uncertainty`, smaller values first. A point is dropped if a kept point of another input was
-/// visited before and is at most `within` away, in the coordinates of the result (squared distance, in double, at most
-/// within²). This has four consequences:
+/// value in the column `uncertainty`, smaller values first. A point is dropped if a point of another input is at most
+/// `within` away and was kept before. Distances are those in the coordinates of the result; squared distances, in
+/// double, are compared with within². This has four consequences:
+
 ///  - Points of equal uncertainty are visited by input, then by row.
 ///  - Points of one input, including duplicates, never drop each other.
 ///  - Every dropped point has a kept point of another input within `within`.
