@@ -113,7 +113,7 @@ TEST_F(RawScans, TenViewsOfTheBunny_GiveTheBunny_WithTheirNoise) {
     ASSERT_NO_FATAL_FAILURE(merge_views(views, poses));
     const json cell = cells_of(shipped("quickstart.yaml"), {"merge-views.ply"}).at(0);
     EXPECT_EQ(cell.at("outcome"), "doubtful");
-    EXPECT_THAT(cell.at("doubts").dump(), HasSubstr("raw-scans removes noise"));
+    EXPECT_THAT(cell.at("doubts").dump(), HasSubstr("workflow raw-scans"));
     EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("genus"), 0);
     EXPECT_GT(metrics_of("out/merge-views.stl", merged, "thresholds=0.5 %diag").at("f-score").get<double>(), 0.94);
 }
@@ -133,7 +133,7 @@ TEST_F(RawScans, TwelveViewsOfTheBuddha_GiveASurfaceThroughTheOtherThree_ButItSp
     ASSERT_NO_FATAL_FAILURE(merge_views(views, poses));
     const json cell = cells_of(shipped("quickstart.yaml"), {"merge-views.ply"}).at(0);
     EXPECT_EQ(cell.at("outcome"), "doubtful");
-    EXPECT_THAT(cell.at("doubts").at(0).get<std::string>(), HasSubstr("where it spans gaps between the points"));
+    EXPECT_THAT(cell.at("doubts").at(0).get<std::string>(), HasSubstr("triangles span gaps between the points"));
     EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("closed"), true);
     EXPECT_GT(
         metrics_of("out/merge-views.stl", folder_ / "others.ply", "thresholds=0.5 %diag").at("recall").get<double>(),
@@ -150,7 +150,7 @@ TEST_F(RawScans, BlobOfTheBuddha_IsDoubtful) {
     const json cell = cells_of("blob.yaml", {buddha.string()}).at(0);
     EXPECT_EQ(cell.at("outcome"), "doubtful");
     EXPECT_THAT(cell.at("doubts"), Contains(HasSubstr("points lie inside the solid")));
-    EXPECT_THAT(cell.at("doubts"), Contains(HasSubstr("where it spans gaps between the points")));
+    EXPECT_THAT(cell.at("doubts"), Contains(HasSubstr("triangles span gaps between the points")));
 }
 
 TEST_F(RawScans, NoiseThatMakesCreases_IsDoubtful) {

@@ -206,7 +206,8 @@ TEST(AlignRefusals, AnUprightPlate_NeedsUp) {
     EXPECT_EQ(aligned(slanted, cloud(plate()), given).partner[0], 0u) << "as the hint says";
     AlignParams nowhere = in_rectangle(plate()[0]);
     nowhere.up = {0, 0, 0};
-    EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), nowhere).sentence(), "`up` is (0, 0, 0); it must have a length");
+    EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), nowhere).sentence(),
+              "`up` is (0, 0, 0); it must be finite and not zero");
     nowhere.up = {1, 2};
     EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), nowhere).sentence(), "`up` has 2 numbers; it needs 3");
 }

@@ -119,7 +119,8 @@ TEST(AlphaSolidOfBadInput, OneOutlierAThousandDiagonalsAway_IsCoveredWithAWarnin
     EXPECT_TRUE(topology(all.solid.mesh).closed);
     EXPECT_GT(all.solid.alpha, 1000);
     EXPECT_EQ(all.solid.uncovered_points.size(), 0u);
-    EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("times the boundary's median edge"), HasSubstr("spans gaps")));
+    EXPECT_THAT(all.warnings,
+                ElementsAre(HasSubstr("times the boundary's median edge"), HasSubstr("span gaps between the points")));
 
     const Outcome most = through_both(cloud, covering(99.9));
     expect_closed(most.solid, 999, 2);

@@ -60,7 +60,7 @@ TEST(DecimateRefuses, NeighboursOrientedDifferently) {
 
 TEST(DecimateRefuses, RepeatedVertex) {
     EXPECT_THAT(refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 1, 2}})),
-                HasSubstr("triangle 1 has the vertices 1, 1 and 2; three different ones are needed"));
+                HasSubstr("triangle 1 has the vertices 1, 1 and 2; a triangle needs three different vertices"));
 }
 
 TEST(DecimateRefuses, VerticesThatAreNotFinite) {

@@ -260,7 +260,7 @@ TEST(PlateCornersRefusals, Parameters) {
     short_up.up = {1};
     EXPECT_EQ(refusal(points, one).sentence(), "`sides` has 1 length; it needs 2");
     EXPECT_EQ(refusal(points, negative).sentence(), "a length of `sides` is -10 u; it must be above 0");
-    EXPECT_EQ(refusal(points, flat_up).sentence(), "`up` is (0, 0, 0); it must have a length");
+    EXPECT_EQ(refusal(points, flat_up).sentence(), "`up` is (0, 0, 0); it must be finite and not zero");
     EXPECT_EQ(refusal(points, short_up).sentence(), "`up` has 1 number; it needs 3");
 }
 

@@ -59,7 +59,7 @@ TEST(ProbePlannerRefusals, Parameters) {
     EXPECT_EQ(refusal_of_params([](P& p) {
                   p.machine_axis = {0, 0, 0};
               }),
-              "machine-axis is (0, 0, 0); it must have a length");
+              "machine-axis is (0, 0, 0); it must be finite and not zero");
     EXPECT_EQ(refusal_of_params([](P& p) { p.directions = 3; }), "directions must be 1 or 2; it is 3");
     EXPECT_EQ(refusal_of_params([](P& p) {
                   p.directions = 2;

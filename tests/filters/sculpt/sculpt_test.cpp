@@ -185,7 +185,7 @@ TEST(Sculpt, NoiseThatTurnsTriangles_IsMeasuredAndDoubtful) {
             continue;
         }
         EXPECT_GE(result.noise, 0.85 * noise);
-        EXPECT_THAT(doubts_of(context), testing::ElementsAre(HasSubstr("raw-scans removes noise")));
+        EXPECT_THAT(doubts_of(context), testing::ElementsAre(HasSubstr("workflow raw-scans")));
     }
 }
 

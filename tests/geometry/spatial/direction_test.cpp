@@ -28,9 +28,11 @@ TEST(DirectionOf, WithoutThreeNumbersOrALength_IsRefused) {
     EXPECT_EQ(refusal({}), "`up` has 0 numbers; it needs 3");
     EXPECT_EQ(refusal({1}), "`up` has 1 number; it needs 3");
     EXPECT_EQ(refusal({0, 0, 1, 0}), "`up` has 4 numbers; it needs 3");
-    EXPECT_EQ(refusal({0, 0, 0}), "`up` is (0, 0, 0); it must have a length");
-    EXPECT_EQ(refusal({0, std::numeric_limits<double>::quiet_NaN(), 1}), "`up` is (0, nan, 1); it must have a length");
-    EXPECT_EQ(refusal({0, 0, std::numeric_limits<double>::infinity()}), "`up` is (0, 0, inf); it must have a length");
+    EXPECT_EQ(refusal({0, 0, 0}), "`up` is (0, 0, 0); it must be finite and not zero");
+    EXPECT_EQ(refusal({0, std::numeric_limits<double>::quiet_NaN(), 1}),
+              "`up` is (0, nan, 1); it must be finite and not zero");
+    EXPECT_EQ(refusal({0, 0, std::numeric_limits<double>::infinity()}),
+              "`up` is (0, 0, inf); it must be finite and not zero");
 }
 
 TEST(PositionOf, WithoutThreeFiniteLengths_IsRefused) {

@@ -20,20 +20,20 @@ using namespace triangle_parts;
 
 /// Bounds below this share of the diagonal are not refined further, unless the limits' bound is smaller.
 constexpr double negligible = 1e-9;
-/// Parts cut between two updates of the lower bound; the same for any number of threads.
+/// Number of parts cut between two updates of the lower bound. It does not depend on the number of threads.
 constexpr std::size_t round_size = 1024;
 /// Parts are cut in the order of seen + weight (upper - seen). To prove the bounds, the weight is 1. To find the
-/// largest distance it is small, because upper bounds of large triangles over many small ones start far too high: on
-/// the pairs of bench/quality/measure.py and models against their decimations to 1/4, 1/20 and 1/100, 0.1 finds it
-/// within 1 % after at most 8,900 parts, 1 after up to 96,000.
+/// largest distance, the weight is small, because upper bounds of large triangles over many small ones start far too
+/// high. Measured on the pairs of bench/quality/measure.py and on models against their decimations to 1/4, 1/20 and
+/// 1/100: weight 0.1 finds the distance within 1 % after at most 8,900 parts, weight 1 after up to 96,000.
 constexpr double weight_to_find = 0.1, weight_to_prove = 1;
 constexpr u64 most_parts_to_find = 15'000;
 
 /// All parts that may still contain the largest distance, and the bounds so far.
 class Search {
 public:
-    /// No distance below `floor` matters. At most `most_waiting` parts are kept, or one class of equal order more. The
-    /// search is for an upper bound of at most `target` too.
+    /// Distances below `floor` are negligible. At most `most_waiting` parts are kept, plus the parts of one size class.
+    /// The search also has to bring the upper bound down to `target`.
     Search(double floor, double gap, double weight, u64 most_waiting,
            double target = std::numeric_limits<double>::infinity())
         : floor_(floor),
@@ -42,13 +42,13 @@ public:
           most_waiting_(most_waiting),
           target_(target) {}
 
-    /// An upper bound of at most this is near enough to the lower one.
+    /// An upper bound of at most this value is near enough to the lower bound.
     double near_lower() const { return std::max(lower_ / (1 - gap_), floor_); }
-    /// A part with an upper bound of at most this need not be refined.
+    /// A part with an upper bound of at most this value need not be refined.
     double enough() const { return std::min(near_lower(), target_); }
     bool is_hopeless() const { return lower_ > target_; }
     void observe(double distance) { lower_ = std::max(lower_, distance); }
-    /// A part with this upper bound is not kept.
+    /// Records the upper bound of a part that is not kept.
     void pass_over(double upper) { passed_over_ = std::max(passed_over_, upper); }
 
     void add(const TrianglePart& part) {
@@ -61,7 +61,7 @@ public:
         drop_last();
     }
 
-    /// Removes up to `most` parts from the front of the queue. Empty when every part is near enough.
+    /// Removes up to `most` parts from the front of the queue. The result is empty when every part is near enough.
     std::vector<TrianglePart> take(std::size_t most) {
         std::vector<TrianglePart> taken;
         while (!waiting_.empty() && taken.size() < most) {
@@ -86,13 +86,15 @@ public:
     }
 
 private:
-    /// Lengths of one class differ by 3 % at most: enough order, and faster than a heap of millions.
+    /// The size class of a length. Lengths in one class differ by 3 % at most. This order is sufficient, and faster
+    /// than a heap of millions.
     static int size_class(double length) {
         int exponent = 0;
         const double mantissa = std::frexp(length, &exponent);  // in [1/2, 1)
         return 32 * exponent + static_cast<int>(64 * mantissa) - 32;
     }
-    /// Every step takes a part of the first class: parts behind as many as there may be steps are never taken.
+    /// Drops parts that will never be taken: every step takes a part of the first class, so the parts after the first
+    /// `most_waiting_` ones are not reached.
     void drop_last() {
         while (waiting_parts_ - waiting_.rbegin()->second.size() >= most_waiting_ && waiting_.size() > 1) {
             const std::vector<TrianglePart>& last = waiting_.rbegin()->second;
@@ -110,7 +112,7 @@ private:
     u64 waiting_parts_ = 0;
 };
 
-/// By triangle: the largest distance at its corners and samples.
+/// For each triangle, the largest distance at its corners and samples.
 Array<double> largest_seen(const CertifiedSurface& surface) {
     Array<double> largest(surface.triangles.size(), 0.0);
     for (std::size_t row = 0; row < largest.size(); ++row)
@@ -165,13 +167,13 @@ void add_triangles(const CertifiedSurface& surface, const TriangleTree& other, S
     }
 }
 
-/// Bounds the part if that is still to be done, and cuts it unless that suffices.
+/// Bounds the part unless that is already done, and cuts it if its bound is still above `enough`.
 Cut bounded_and_cut(TrianglePart part, double enough) {
     if (part.below == NearestTriangle::none) bound(part, enough);
     return part.upper > enough ? cut(part, enough) : Cut{{part}, 1};
 }
 
-/// Takes parts until all are near enough or the target cannot be reached, at most `most`. Returns the number of parts
+/// Takes at most `most` parts, until all are near enough or the target cannot be reached. Returns the number of parts
 /// taken.
 u64 refine(Search& search, u64 most, Execution& execution) {
     u64 taken = 0;
@@ -193,7 +195,7 @@ u64 refine(Search& search, u64 most, Execution& execution) {
     return taken;
 }
 
-/// Extent of the vertices that triangles use.
+/// Diagonal of the box of the vertices that triangles use, and the rounding of their positions.
 struct Extent {
     double diagonal, rounding;
 };

@@ -9,7 +9,7 @@ namespace scanmill {
 
 namespace {
 
-/// From a point along an axis to a side of the surface's bounding box.
+/// A ray from a point along an axis to a side of the surface's bounding box.
 struct Ray {
     int axis = 0;
     bool is_upward = true;

@@ -13,20 +13,20 @@ namespace scanmill {
 constexpr double position_rounding(double largest_coordinate) { return 0x1p-46 * largest_coordinate; }
 
 struct NearestDistances {
-    /// In the order of the points; 0 if not above `rounding`.
+    /// Distances in the order of the points; 0 for a distance not above `rounding`.
     Array<double> distances;
-    /// Rows of the nearest triangles; ties: the smallest.
+    /// Rows of the nearest triangles; of equally near triangles, the smallest row.
     Array<u32> triangles;
     /// The same triangles as NearestTriangle::slot in the tree.
     Array<u32> slots;
 };
 
-/// Visits the points along a space-filling curve and starts each search at the previous result. Pre: finite points.
-/// Bytes do not depend on the number of threads.
+/// Computes the distance of every point to the surface. Visits the points along a space-filling curve and starts each
+/// search at the previous result. Pre: finite points. Bytes do not depend on the number of threads.
 NearestDistances nearest_distances(std::span<const Vec3> points, const TriangleTree& surface, double rounding,
                                    Execution& execution);
 
-/// The same for the vertices of a mesh, by vertex. A vertex in no triangle has distance 0 and
+/// The same for the vertices of a mesh; results are indexed by vertex. A vertex in no triangle has distance 0 and
 /// NearestTriangle::none.
 NearestDistances nearest_of_vertices(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                      const TriangleTree& surface, double rounding, Execution& execution);

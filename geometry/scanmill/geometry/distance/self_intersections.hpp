@@ -14,15 +14,16 @@ namespace scanmill {
 struct SelfIntersections {
     /// Number of all pairs.
     u64 count = 0;
-    /// Rows of triangles, the smaller first; in ascending order.
+    /// Rows of the two triangles, the smaller first; pairs ascend. Contains only the first `most_pairs` pairs.
     Array<std::array<u32, 2>> pairs;
 };
 
-/// Pairs of triangles that intersect as triangles_intersect() defines it, where vertices at one position count as one
-/// vertex: a soup has the same pairs as the mesh that it draws. Only the first `most_pairs` pairs are returned.
+/// Finds the pairs of triangles that intersect as triangles_intersect() defines it. Vertices at one position count as
+/// one vertex, so a triangle soup has the same pairs as the connected mesh with the same triangles.
 ///
-/// Pre: finite coordinates; `tree` is over exactly these positions and triangles. Nothing depends on the number of
-/// threads. Cost: O(F log F) plus one test for each pair of overlapping boxes; about 1 µs per triangle of a good mesh.
+/// Pre: finite coordinates; `tree` contains exactly these positions and triangles. The result does not depend on the
+/// number of threads. Cost: O(F log F) plus one test for each pair of overlapping boxes; about 1 µs per triangle of a
+/// good mesh.
 SelfIntersections self_intersections(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                      const TriangleTree& tree, Execution& execution,
                                      u64 most_pairs = std::numeric_limits<u64>::max());

@@ -20,8 +20,8 @@ double squared(const Vec3& point, const Corners& triangle) {
     return (nearest_on_triangle(point, triangle[0], triangle[1], triangle[2]) - point).squaredNorm();
 }
 
-/// Whether the segment passes through the inside of the triangle, not along its plane: its ends are on different sides
-/// of the plane, and its line passes the three edges on the same side.
+/// Whether the segment passes through the inside of the triangle, and not along its plane. The ends must be on
+/// different sides of the plane, and the segment's line must pass the three edges on the same side.
 bool passes_through(const Segment& segment, const Corners& triangle) {
     const auto& [a, b, c] = triangle;
     const Vec3 normal = (b - a).cross(c - a);
@@ -50,7 +50,7 @@ double squared_distance_of_segments(const Segment& one, const Segment& other) {
         std::min({squared(one[0], other), squared(one[1], other), squared(other[0], one), squared(other[1], one)});
     const Vec3 d1 = one[1] - one[0], d2 = other[1] - other[0], from = one[0] - other[0];
     const double a = d1.squaredNorm(), e = d2.squaredNorm(), b = d1.dot(d2);
-    // a e - b², without cancellation.
+    // Equals a e - b², computed without cancellation.
     const double denominator = d1.cross(d2).squaredNorm();
     if (!(denominator > 0)) return least;
     const double c = d1.dot(from), f = d2.dot(from);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Distances between segments and triangles, and whether a ball or a cylinder that moves comes near a mesh.
+/// Distances between segments and triangles, and tests whether a moving ball or cylinder comes near a mesh.
 ///
-/// A ball that moves along a segment sweeps the points within its radius of the segment; a segment that moves without
+/// A ball that moves along a segment sweeps all points within its radius of the segment. A segment that moves without
 /// turning sweeps a parallelogram. No result depends on the processor: only sums, products, quotients and roots are
-/// used. Segments may be points and triangles may be segments or points.
+/// used. Segments may be points, and triangles may be segments or points.
 
 #include <array>
 #include <functional>
@@ -13,27 +13,28 @@
 
 namespace scanmill {
 
-/// Squares of distances; 0 if the two have a point in common. Errors are about 1e-14 of the largest distance between
-/// two corners, and about 1e-8 of it between segments that are parallel to within 1e-8.
+/// Squared distances; 0 if the two have a point in common. Errors are about 1e-14 of the largest distance between two
+/// corners. Between segments that are parallel to within 1e-8, errors are about 1e-8 of it.
 /// Pre: finite coordinates.
-/// Source: Ericson, Real-Time Collision Detection (2005), sections 5.1.9 and 5.1.10. Where two segments are nearest,
-/// either both nearest points are inside them, or one is an end; two triangles that do not meet are nearest at an edge
-/// of one of them.
+/// Source: Ericson, Real-Time Collision Detection (2005), sections 5.1.9 and 5.1.10. If two segments are nearest at a
+/// pair of points, both points are inside the segments, or one of them is an end. Two triangles that do not meet are
+/// nearest at an edge of one of them.
 double squared_distance_of_segments(const std::array<Vec3, 2>& one, const std::array<Vec3, 2>& other);
 double squared_distance(const std::array<Vec3, 2>& segment, const std::array<Vec3, 3>& triangle);
 double squared_distance(const std::array<Vec3, 3>& one, const std::array<Vec3, 3>& other);
 
-/// Which triangles of a tree count, by slot; all if empty.
+/// Selects the triangles of a tree that count, by slot. If empty, all triangles count.
 using CountsTriangle = std::function<bool(u32 slot)>;
 
-/// Whether a triangle that counts is nearer than `distance` to the segment: whether a ball of that radius meets the
-/// mesh on its way from one end to the other.
+/// Whether a triangle that counts is nearer than `distance` to the segment. In other words: whether a ball with this
+/// radius meets the mesh while it moves from one end of the segment to the other.
 bool is_nearer(const TriangleTree& mesh, const std::array<Vec3, 2>& segment, double distance,
                const CountsTriangle& counts = {});
-/// The same for a triangle.
+/// Whether a triangle that counts is nearer than `distance` to `triangle`.
 bool is_nearer(const TriangleTree& mesh, const std::array<Vec3, 3>& triangle, double distance,
                const CountsTriangle& counts = {});
-/// The same for the parallelogram that a segment sweeps if it moves by `motion`.
+/// Whether a triangle that counts is nearer than `distance` to the parallelogram that the segment sweeps when it moves
+/// by `motion`.
 bool is_nearer_when_moved(const TriangleTree& mesh, const std::array<Vec3, 2>& segment, const Vec3& motion,
                           double distance, const CountsTriangle& counts = {});
 

@@ -14,20 +14,21 @@ namespace {
 
 using exact::Corners;
 
-/// A bound of the rounding error of a determinant of differences, as a share of the sum of the absolute values of its
-/// terms (Shewchuk 1997, orient3d), and of what underflow may add to it for coordinates in the permitted range.
+/// Bounds of the rounding error of a determinant of differences. `rounding`: as a share of the sum of the absolute
+/// values of its terms (Shewchuk 1997, orient3d). `underflow`: what underflow may add for coordinates in the permitted
+/// range.
 constexpr double epsilon = 0x1p-53;
 constexpr double rounding = (7 + 56 * epsilon) * epsilon, underflow = 0x1p-900;
 
-/// A plane whose sides are decided in rounded arithmetic where that is certain.
+/// A plane that decides sides in rounded arithmetic where rounding cannot change the result.
 struct Plane {
     Vec3 origin, normal;
     /// Sums of the absolute values of the terms of the normal's coordinates.
     Vec3 magnitude;
 
-    /// The plane with this normal exactly.
+    /// The plane with exactly this normal.
     Plane(const Vec3& at, const Vec3& across) : origin(at), normal(across), magnitude(across.cwiseAbs()) {}
-    /// The plane spanned by the exact values of two differences, or of one and a vector.
+    /// The plane spanned by two vectors. Each is exact, or the rounded value of an exact difference of positions.
     Plane(const Vec3& at, const Vec3& u, const Vec3& v) : origin(at) {
         for (int axis = 0; axis < 3; ++axis) {
             const int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -36,7 +37,7 @@ struct Plane {
             magnitude[axis] = std::abs(one) + std::abs(other);
         }
     }
-    /// -1 or 1, or 0 if rounding may decide. Overflow makes it 0 too.
+    /// The side of the plane, -1 or 1; 0 if rounding or overflow makes the side uncertain.
     int side_of(const Vec3& point) const {
         const Vec3 to = point - origin;
         const double value = normal.dot(to), error = rounding * magnitude.dot(to.cwiseAbs()) + underflow;
@@ -48,7 +49,7 @@ Plane plane_of(const Corners& triangle) {
     return {*triangle[0], *triangle[1] - *triangle[0], *triangle[2] - *triangle[0]};
 }
 
-/// The side of the plane on which all corners from `first` on are, or 0.
+/// The side of the plane on which all corners from number `first` on lie; 0 if there is none.
 int common_side(const Plane& plane, const Corners& triangle, std::size_t first) {
     const int side = plane.side_of(*triangle[2]);
     for (std::size_t i = first; i < 2; ++i)
@@ -56,8 +57,8 @@ int common_side(const Plane& plane, const Corners& triangle, std::size_t first) 
     return side;
 }
 
-/// Whether a plane through the common first corner is between the triangles: the one across the difference of the mean
-/// directions of their edges.
+/// Whether a certain plane through the common first corner separates the triangles. Its normal is the difference of the
+/// mean directions of their edges.
 bool are_opposite(const Corners& one, const Corners& other) {
     const Vec3& corner = *one[0];
     const auto direction = [&](const Vec3& to) -> Vec3 { return (to - corner) / (to - corner).lpNorm<1>(); };
@@ -65,8 +66,8 @@ bool are_opposite(const Corners& one, const Corners& other) {
     return common_side(between, one, 1) == 1 && common_side(between, other, 1) == -1;
 }
 
-/// Whether the plane through an edge of `one` and perpendicular to `one` is between the triangles. Common corners may
-/// be on that edge.
+/// Whether a plane through an edge of `one` and perpendicular to `one` separates the triangles. Common corners may be
+/// on this edge.
 bool edge_separates(const Corners& one, const Vec3& normal, const Corners& other, std::size_t common) {
     for (std::size_t opposite = common; opposite < 3; ++opposite) {
         const Vec3 &from = *one[(opposite + 1) % 3], &to = *one[(opposite + 2) % 3];
@@ -76,7 +77,8 @@ bool edge_separates(const Corners& one, const Vec3& normal, const Corners& other
     return false;
 }
 
-/// Reorders both so that their common corners come first, in the same order. Returns how many there are.
+/// Reorders the corners of both triangles so that the common corners come first, in the same order. Returns their
+/// number.
 std::size_t bring_common_first(Triangle& one, Triangle& other) {
     std::size_t common = 0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -100,7 +102,7 @@ Corners corners_of(std::span<const Vec3> positions, const Triangle& triangle) {
     return {&positions[triangle[0]], &positions[triangle[1]], &positions[triangle[2]]};
 }
 
-/// Whether a plane between the triangles is found, in rounded arithmetic: then they touch in common corners only.
+/// Whether rounded arithmetic finds a plane between the triangles. Then they have at most common corners in common.
 bool are_apart(const Corners& one, const Corners& other, std::size_t common) {
     if (common == 0 && !boxes_meet(one, other)) return true;
     if (common == 1 && are_opposite(one, other)) return true;

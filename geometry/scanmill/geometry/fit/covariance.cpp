@@ -35,7 +35,8 @@ Moments moments_about(const Vec3& centroid, std::span<const Vec3> points) {
 }
 
 /// Newton's method from 0. It never overshoots, because the characteristic polynomial is concave left of its least
-/// root. Steps become short where two roots are close; then any direction between their eigenvectors is good enough.
+/// root. Where two roots are close, the steps become short. Any direction between the two eigenvectors is then good
+/// enough.
 double least_eigenvalue(const Moments& m) {
     const double trace = m.trace(), minors = m.sum_of_minors(), determinant = m.determinant();
     double root = 0;
@@ -49,7 +50,7 @@ double least_eigenvalue(const Moments& m) {
     return root;
 }
 
-/// The longest cross product of two rows of the matrix minus the eigenvalue.
+/// The eigenvector of the least eigenvalue: the longest cross product of two rows of M - eigenvalue I.
 Vec3 direction_of(const Moments& m, double eigenvalue) {
     const Vec3 x(m.xx - eigenvalue, m.xy, m.xz), y(m.xy, m.yy - eigenvalue, m.yz), z(m.xz, m.yz, m.zz - eigenvalue);
     Vec3 best = x.cross(y);

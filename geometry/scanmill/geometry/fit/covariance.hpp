@@ -10,8 +10,8 @@ namespace scanmill {
 
 struct Scatter {
     Vec3 centroid;
-    /// Unit length, in the direction of least variance, by with_positive_sign(); a direction perpendicular to a line of
-    /// points; (0, 0, 1) for equal points.
+    /// Unit vector in the direction of least variance, with the sign of with_positive_sign(). For points on a line it
+    /// is perpendicular to the line; for equal points it is (0, 0, 1).
     Vec3 normal;
     /// The product of the two larger principal variances over the square of their sum: 1/4 for a round disc, 0 for a
     /// line, about (width / length)² for a narrow strip.
@@ -20,11 +20,11 @@ struct Scatter {
     double surface_variation;
 };
 
-/// Pre: at least one point; coordinates relative to a nearby point, else digits are lost. Uses only exactly rounded
-/// operations, so the bits do not depend on the processor.
+/// Computes the scatter of the points. Uses only exactly rounded operations, so the bits do not depend on the
+/// processor. Pre: at least one point; coordinates are relative to a nearby point, otherwise digits are lost.
 Scatter scatter_of(std::span<const Vec3> points);
 
-/// v or -v, whichever has a positive coordinate of largest magnitude (of equal magnitudes the first).
+/// v or -v, whichever has a positive coordinate of largest magnitude. Of equal magnitudes, the first coordinate counts.
 Vec3 with_positive_sign(const Vec3& v);
 
 }  // namespace scanmill

@@ -14,22 +14,22 @@ namespace scanmill {
 struct Jet {
     /// Unit length; which side is outside is not decided.
     Vec3 normal;
-    /// Where the line through the first point along the normal of the plane meets the polynomial, relative to that
-    /// point.
+    /// Vector from the first point to the polynomial, along the normal of the plane.
     Vec3 offset;
-    /// False if the points do not determine the polynomial: fewer than 6, or all near one conic of the plane. The
-    /// result is then that of the plane that fits the points best.
+    /// False if the points do not determine the polynomial: there are fewer than 6, or all are near one conic of the
+    /// plane. `normal` and `offset` are then those of the plane that fits the points best.
     bool is_curved;
-    /// Root of the (weighted) mean square of the errors, as a share of that of the distances to the first point: about
-    /// 0.5 for points that fill a ball. 0 unless the polynomial is determined.
+    /// Root mean square (weighted) of the fit's errors, divided by that of the distances to the first point. About 0.5
+    /// for points that fill a ball. 0 unless the polynomial is determined.
     double error = 0;
 };
 
-/// The polynomial s = a + b u + c v + d u² + e u v + f v² with the least sum of squared errors in s, over the plane
-/// normal to the direction of least variance of `offsets`; with `weights` of weighted squared errors.
+/// Fits the polynomial s = a + b u + c v + d u² + e u v + f v² with the least (weighted) sum of squared errors in s. u
+/// and v span the plane normal to the direction of least variance of `offsets`; s is the height over it.
 ///
-/// Pre: at least one offset, the first one zero (the point itself, which counts); as many weights above 0, or none.
-/// Uses only exactly rounded operations, so the bits do not depend on the processor. Cost: about 1 µs for 25 points.
+/// Pre: at least one offset; the first one is zero (the point itself, which counts as a sample). `weights` is empty or
+/// has a positive weight for each offset. Uses only exactly rounded operations, so the bits do not depend on the
+/// processor. Cost: about 1 µs for 25 points.
 Jet fit_jet(std::span<const Vec3> offsets, std::span<const double> weights = {});
 
 }  // namespace scanmill

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t fewest_samples = 6;
 constexpr double most_deviations = 3;
-/// Least ratio of squared width to squared length: a neighbourhood narrower than about 1/30 shows only a curve.
+/// Least ratio of squared width to squared length. A narrower neighbourhood (about 1/30) determines only a curve.
 constexpr double least_flatness = 1e-3;
 
-/// Expresses the offsets from the point `origin` in the frame of the plane.
+/// Expresses all offsets except number `origin` relative to it, in a frame of the plane.
 void take_samples(std::span<const Vec3> offsets, std::size_t origin, const Vec3& normal,
                   Array<QuadricSample>& samples) {
     const auto [along, across] = directions_across(normal);

@@ -25,8 +25,8 @@ struct LocalSurfaceParams {
 };
 
 struct LocalSurface {
-    /// Unit length, by with_positive_sign(). Normal of the quadric at its origin; without a quadric, Scatter::normal of
-    /// the point and its neighbours.
+    /// Unit vector with the sign of with_positive_sign(): the normal of the quadric at its origin. Without a quadric,
+    /// it is Scatter::normal of the point and its neighbours.
     Vec3 normal = Vec3::Zero();
     /// Principal curvatures at the quadric's origin, |first| >= |second|; positive towards the normal.
     double first_curvature = 0, second_curvature = 0;
@@ -34,23 +34,23 @@ struct LocalSurface {
     double fit_error = 0;
     /// Distance to the nearest neighbour; infinite without one.
     double spacing = std::numeric_limits<double>::infinity();
-    /// Neighbours excluded from the fit: more than three standard deviations off.
+    /// Number of neighbours that the fit excludes: their error exceeds three standard deviations.
     u32 outliers = 0;
-    /// False if no quadric is determined: fewer than 6 neighbours, or all near one line or conic. The result is then
-    /// the plane, with curvature 0.
+    /// False if no quadric is determined: there are fewer than 6 neighbours, or all are near one line or conic. The
+    /// result is then the plane, with curvature 0.
     bool is_curved = false;
 };
 
-/// The surface around `point`. Pre: neighbours ascend by distance; none of them is the point.
+/// Fits a surface to `point` and its neighbours. Pre: neighbours ascend by distance; none of them is the point.
 /// Scaling point and neighbours by a power of two scales the result exactly.
-/// Weights are 1 / (d² + h²): d is the distance to the origin within the plane, h² the mean of d². Neighbours off by
-/// more than three standard deviations are excluded once, if at least 6 remain.
+/// Weights are 1 / (d² + h²): d is the distance to the origin within the plane, h² the mean of d². The fit is repeated
+/// once without the neighbours whose error exceeds three standard deviations, if at least 6 remain.
 /// Source: Wang 2006, section 3.5; the inclination is an addition.
 LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin);
 
 /// Fits a surface at every position of the tree; uses all other positions if there are fewer than params.neighbours.
-/// The result depends on the positions alone, not on threads. Cost: for 25 neighbours about twice that of finding
-/// them. Checks for cancellation.
+/// The result depends on the positions alone, not on the number of threads. Cost: for 25 neighbours, about twice the
+/// cost of finding them. Throws Cancelled.
 Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfaceParams& params, const Execution& execution);
 
 }  // namespace scanmill

@@ -10,17 +10,17 @@ namespace scanmill {
 namespace {
 
 constexpr int most_unknowns = 5;
-/// The least share of a diagonal entry that elimination may leave: the squared sine of the angle between a column and
-/// the columns before it.
+/// The least share of a diagonal entry that elimination may leave. The share is the squared sine of the angle between a
+/// column and the span of the columns before it.
 constexpr double least_pivot = 1e-9;
 
-/// Normal equations: the lower half, row by row, and the right-hand side.
+/// Normal equations: the lower half of the matrix, row by row, and the right-hand side.
 struct Equations {
     std::array<std::array<double, most_unknowns>, most_unknowns> left{};
     std::array<double, most_unknowns> right{};
 };
 
-/// The entries are sums of weight * u^i v^j; every product is summed once.
+/// Sums the entries, weight * u^i v^j; each of these sums is computed once.
 Equations equations_of(std::span<const QuadricSample> samples) {
     double uuuu = 0, uuuv = 0, uuvv = 0, uvvv = 0, vvvv = 0, uuu = 0, uuv = 0, uvv = 0, vvv = 0, uu = 0, uv = 0, vv = 0;
     std::array<double, most_unknowns> right{};
@@ -93,15 +93,15 @@ std::optional<Quadric> fit_quadric(std::span<const QuadricSample> samples, Incli
 PrincipalCurvatures principal_curvatures(const Quadric& quadric) {
     auto [a, b, c, d, e] = quadric;
     const double squared_slope = d * d + e * e, slope = std::sqrt(squared_slope);
-    if (slope > 0) {  // u along the gradient
+    if (slope > 0) {  // turns the frame so that u points along the gradient
         const double x = d / slope, y = e / slope;
         const double along = (a * x + b * y) * x + c * y * y, across = (a * y - b * x) * y + c * x * x;
         b = 2 * (c - a) * x * y + b * (x - y) * (x + y);
         a = along;
         c = across;
     }
-    // The map from the plane to the surface stretches the gradient's direction by `stretch`; uu, uv and vv are the
-    // shape operator in orthonormal directions.
+    // The map from the plane to the surface stretches lengths along the gradient by `stretch`. uu, uv and vv are the
+    // entries of the shape operator in orthonormal directions.
     const double stretch = std::sqrt(1 + squared_slope);
     const double uu = 2 * a / (stretch * stretch * stretch), uv = b / (stretch * stretch), vv = 2 * c / stretch;
     const double mean = (uu + vv) / 2, half = (uu - vv) / 2, spread = std::sqrt(half * half + uv * uv);

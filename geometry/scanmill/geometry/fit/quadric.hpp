@@ -22,9 +22,9 @@ struct QuadricSample {
 /// Whether the quadric may be inclined to the plane of u and v at the origin. If not, d = e = 0.
 enum class Inclination { free, none };
 
-/// The quadric with the least sum of weighted squared errors in s. Empty if the samples do not determine it: fewer than
-/// 5 (3 without inclination), or all near one conic through the origin, such as two straight lines.
-/// Pre: finite, weights above 0. Cost: about 40 operations per sample, plus 150.
+/// Fits the quadric with the least sum of weighted squared errors in s. Empty if the samples do not determine it: there
+/// are fewer than 5 (3 without inclination), or all are near one conic through the origin, such as two straight lines.
+/// Pre: finite samples, weights above 0. Cost: about 40 operations per sample, plus 150.
 std::optional<Quadric> fit_quadric(std::span<const QuadricSample> samples, Inclination inclination = Inclination::free);
 
 /// In 1 / unit; |first| >= |second|. Positive where the surface bends towards positive s.
@@ -32,7 +32,8 @@ struct PrincipalCurvatures {
     double first = 0, second = 0;
 };
 
-/// At the origin; there the plane of u and v need not be tangent. If d = e = 0: (a + c) ± sqrt((a - c)² + b²).
+/// The curvatures at the origin, where the quadric may be inclined to the plane of u and v. If d = e = 0, they are (a +
+/// c) ± sqrt((a - c)² + b²).
 PrincipalCurvatures principal_curvatures(const Quadric& quadric);
 
 }  // namespace scanmill

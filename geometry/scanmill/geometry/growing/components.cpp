@@ -20,7 +20,7 @@ struct Sums {
     bool open = false;
 
     bool faces_inwards(const std::optional<Vec3>& up) const {
-        // `volume` is about the origin, this one about the centroid of the area.
+        // `volume` is about the origin; this volume is about the centroid of the area.
         const double about_centroid = size > 0 ? volume - area.dot(moment / size) / 3 : volume;
         if (!open) return volume < 0;
         if (std::abs(about_centroid) > 0.01 * size * std::sqrt(size)) return about_centroid < 0;
@@ -56,7 +56,7 @@ void orient_outwards(Surface& surface, const Components& components, std::span<c
     std::vector<bool> open(components.count, false);
     for (u32 point = 0; point < groups.size(); ++point)
         if (surface.states[point] == PointState::front) open[components.of_point[point]] = true;
-    // Groups by their number, then components.
+    // The numbers of the groups are followed by those of the components.
     DisjointSets sets(groups.size() + components.count);
     const auto node_of = [&](u32 point) { return static_cast<u32>(groups.size()) + components.of_point[point]; };
     for (u32 point = 0; point < groups.size(); ++point)

@@ -15,7 +15,7 @@ namespace scanmill::growing {
 
 namespace {
 
-/// spatial_order() orders points of one cell of the curve by row; this orders them by position.
+/// Sorts the points of each cell of the Morton curve by position; spatial_order() sorts them by row.
 void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box, Array<u32>& order) {
     constexpr double steps = (1 << 21) - 1;
     const double extent = (box.high - box.low).maxCoeff();
@@ -67,7 +67,7 @@ void require_area(const DistinctPoints& points, std::size_t rows) {
     if (rows == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(hint);
     if (points.size() < 3)
         throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", points.size(), rows).hint(hint);
-    // The point farthest from the first, and the one farthest from the line through both.
+    // Finds the point farthest from the first point, then the point farthest from the line through these two.
     const auto& p = points.positions;
     const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
     const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
@@ -77,7 +77,7 @@ void require_area(const DistinctPoints& points, std::size_t rows) {
     if (off <= 1e-9 * (end - p[0]).norm())
         throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs points off that line",
                     points.size(), off)
-            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
+            .hint("scan more than a single profile, or check which columns are read as x, y and z");
 }
 
 Neighbourhoods::Neighbourhoods(const DistinctPoints& points, unsigned threads)

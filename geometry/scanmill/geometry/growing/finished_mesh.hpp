@@ -9,15 +9,15 @@ namespace scanmill::growing {
 
 struct FinishedMesh {
     TriangleMesh mesh;
-    /// Per vertex its row in the cloud.
+    /// For each vertex, its row in the cloud.
     Array<u32> rows;
-    /// Per point its vertex, invalid_index for unused ones.
+    /// For each point, its vertex; invalid_index for unused points.
     Array<u32> vertex_of_point;
 };
 
-/// The points that are in a triangle, in input order with all their columns, and the cloud's frame. Triangles in the
-/// order of their creation, lowest vertex first. No sharp edges. `cloud`: the one that surface.points was made from.
-/// Cost: linear.
+/// The vertices are the points in a triangle, in the order of the cloud, with all columns and the cloud's frame.
+/// Triangles keep the order of their creation and start with their lowest vertex. The mesh has no sharp edges. `cloud`:
+/// the cloud that surface.points was made from. Cost: linear.
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface);
 
 }  // namespace scanmill::growing

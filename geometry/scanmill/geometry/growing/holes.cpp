@@ -20,21 +20,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Most edges of narrow loops: of those that are closed at all, with one replaced triangle, with two. The first is the
-/// most that callers offer as a parameter; the others keep the number of attempts (edges⁴ and edges⁵) below the cost of
-/// the longest loop.
+/// Largest number of edges of a narrow loop that is closed with no, one or two replaced triangles. The first number is
+/// the most that callers offer as a parameter. The other two keep the number of attempts (edges⁴ and edges⁵) below the
+/// cost of the longest loop.
 constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
-/// Cosine of 172 degrees. The sides of a cone of half angle 12 differ by 156, and a triangulation over its tip divides
-/// that unevenly. The remaining 8 degrees keep rounding from putting triangles on each other.
+/// Cosine of 172 degrees. The sides of a cone of half angle 12 differ by 156 degrees, and a triangulation over its tip
+/// divides this angle unevenly. The margin of 8 degrees to 180 prevents triangles that coincide by rounding.
 constexpr double tip_cosine = -0.9902680687415704;
 /// Least mean cosine between the normals of the triangulation and of the triangles around the loop. The sides of a tip
-/// face the same way as its lid. Around a narrow strip along a fold, open on all sides, the triangles face away from a
-/// lid by 120 degrees or more.
+/// face the same way as the triangulation that closes it. At a narrow strip along a fold that is open on all sides, the
+/// triangles face away from the triangulation by 120 degrees or more.
 constexpr double least_facing = -0.5;
-/// The same for long loops. The walls of a channel are at 90 degrees to a lid, less what noise changes; 78 degrees is
-/// between those and a slit across a fold of 120.
+/// Replaces least_facing for long loops. The walls of a channel are at 90 degrees to the triangulation; noise reduces
+/// this angle. The limit of 78 degrees lies between such walls and a slit across a fold of 120 degrees.
 constexpr double least_facing_of_long = 0.2;
-/// A lid with all corners around a hole's centre extends one radius from it; noise and folds add less than another one.
+/// A loop is long if a corner is farther than this many radii from its centre. A triangulation with all corners around
+/// a hole's centre extends one radius from the centre; noise and folds add less than another one.
 constexpr double long_in_radii = 2;
 
 /// Triangles of least total area that keep the limits and intersect none of `near`; empty if none were found.
@@ -43,7 +44,8 @@ std::vector<Triangle> least_triangulation(const Surface& surface, const NearTria
     const auto& p = surface.positions;
     const Fans& fans = surface.fans;
     const u32 count = static_cast<u32>(corners.size());
-    std::vector<Vec3> normals(corners.size() * corners.size(), Vec3::Zero());  // by edge i j: the normal beyond it
+    std::vector<Vec3> normals(corners.size() * corners.size(),
+                              Vec3::Zero());  // by edge i j: normal of the triangle at it
     const auto edge_cost = [&](u32 i, u32 j) {
         const u32 a = corners[i], b = corners[j];
         const bool is_free = fans.left_of(a, b) == invalid_index && fans.left_of(b, a) == invalid_index;
@@ -56,7 +58,8 @@ std::vector<Triangle> least_triangulation(const Surface& surface, const NearTria
         const double twice_area = across(i, k, j).norm();
         return twice_area > 0 ? twice_area : infinity;
     };
-    // Whether the dihedral deviation at the edge, to the surface or to the part beyond, exceeds the limit.
+    // Whether the dihedral deviation at edge i j exceeds the limit. The neighbour is a triangle of the surface or, at a
+    // new edge, the triangle already chosen there.
     const auto folds = [&](u32 i, u32 j, const Vec3& normal) {
         const u32 from = corners[j], to = corners[i], third = fans.left_of(from, to);
         const Vec3 other = third != invalid_index ? surface.facet_normal(from, to, third) : normals[i * count + j];
@@ -82,14 +85,15 @@ std::vector<Triangle> least_triangulation(const Surface& surface, const NearTria
     return triangles;
 }
 
-/// Increases with the angle from `ref` to `direction`, counter-clockwise seen against `axis`, from 0 to 4.
+/// Returns a number from 0 to 4 that increases with the angle from `ref` to `direction`, counter-clockwise seen against
+/// `axis`.
 double pseudo_angle(const Vec3& ref, const Vec3& direction, const Vec3& axis) {
     const double along = ref.dot(direction), across = axis.dot(ref.cross(direction));
     const double share = along / (std::abs(along) + std::abs(across));
     return across >= 0 ? 1 - share : 3 + share;
 }
 
-/// The boundary edge that follows from → vertex around the hole on its right.
+/// The end of the boundary edge that follows edge from → vertex around the hole on its right.
 u32 next_on_hole(const Surface& surface, u32 from, u32 vertex) {
     const auto& p = surface.positions;
     const Vec3 back = p[from] - p[vertex];
@@ -107,7 +111,8 @@ u32 next_on_hole(const Surface& surface, u32 from, u32 vertex) {
     return next;
 }
 
-/// The loop's vertices, each once, against its direction; empty when it is longer or passes a vertex twice.
+/// The vertices of the loop that starts with edge from → to, in reverse order. Empty if the loop has more than
+/// `most_edges` edges or passes a vertex twice.
 std::vector<u32> hole_at(const Surface& surface, u32 from, u32 to, std::size_t most_edges) {
     std::vector<u32> loop{from};
     for (u32 before = from, vertex = to; vertex != from;) {
@@ -123,13 +128,13 @@ std::vector<u32> hole_at(const Surface& surface, u32 from, u32 to, std::size_t m
 
 /// The extent of a boundary loop, and the orientation of the triangles around it.
 struct LoopShape {
-    double farthest = 0;  ///< corner, from the loop's centre
-    double facing = 0;  ///< mean cosine, by length, between the normals of its triangles and of a lid
-    double largest_radius = 0;  ///< of the corners' search radii
-    /// Least cosine between the normals of any two triangles around it; 1 without `compare`.
+    double farthest = 0;  ///< largest distance of a corner from the loop's centre
+    double facing = 0;  ///< mean cosine, weighted by length, between a lid's normal and those around the loop
+    double largest_radius = 0;  ///< largest search radius of the corners
+    /// Least cosine between the normals of any two triangles around the loop; 1 without `compare`.
     double least_cosine = 1;
 
-    /// Corners counter-clockwise as the triangles of a lid.
+    /// `corners` are counter-clockwise as those of the triangles that close the loop (the lid).
     LoopShape(const Surface& surface, std::span<const u32> corners, bool compare) {
         const auto& p = surface.positions;
         const auto next = [&](std::size_t i) { return corners[i + 1 < corners.size() ? i + 1 : 0]; };
@@ -165,7 +170,8 @@ public:
           dihedral_cosine_(std::max(tip_cosine, elementary::turn_of(limits.largest_dihedral).cosine - 1e-9)),
           execution_(execution) {}
 
-    /// Corners counter-clockwise as the triangles of a lid.
+    /// Closes the loop if possible; returns whether it did. `corners` are counter-clockwise as those of the new
+    /// triangles.
     bool close(const std::vector<u32>& corners) {
         execution_.check_cancelled();
         const bool of_any_size = corners.size() <= narrow_.most_edges;
@@ -177,7 +183,7 @@ public:
         if (ends_at_sharp_edges && loop.least_cosine < dihedral_cosine_) return false;
         limits_ = {of_any_size ? infinity : radius, of_any_size ? tip_cosine : dihedral_cosine_, narrow_.longest_edge};
         if (triangulate(corners, 0)) return true;
-        // If only larger triangles would do, replacing one makes the hole larger still.
+        // If every triangulation needs larger triangles, replacing a triangle makes the hole even larger.
         if (corners.size() > most_corners[1] ||
             !can_be_triangulated(surface_, corners, {limits_.largest_radius, any_dihedral, narrow_.longest_edge}))
             return false;
@@ -199,7 +205,7 @@ private:
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const u32 from = corners[i], to = corners[i + 1 < corners.size() ? i + 1 : 0];
             const u32 third = surface_.fans.left_of(to, from);
-            // Otherwise it would be a corner of two loops, or twice of this one.
+            // A point on the boundary would become a corner of two loops, or twice a corner of this one.
             if (surface_.states[third] != PointState::interior || std::ranges::find(corners, third) != corners.end())
                 continue;
             const Triangle obstacle{to, from, third};
@@ -233,7 +239,8 @@ bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners
 
 std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const TriangulationLimits& limits) {
-    // The first attempt ignores obstacles: there are few, and if it finds no triangulation, none exists with obstacles.
+    // The first attempt ignores obstacles, because there are few. If it finds no triangulation, none exists with
+    // obstacles.
     const NearTriangles none;
     std::vector<Triangle> triangles = least_triangulation(surface, none, corners, limits);
     if (triangles.empty()) return {};
@@ -251,8 +258,8 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Ex
     if (most_edges < 3) return 0;
     const TriangulationLimits limits{infinity, fold_cosine, longest_edge};
     std::size_t closed = 0;
-    // Each from its lowest corner. Closing other loops cannot make them possible: their boundary edges keep their
-    // triangles, and edges across them can only be used up.
+    // Each loop starts with its lowest corner. Closing other loops cannot make these loops possible: their boundary
+    // edges keep their triangles, and free edges across them only become fewer.
     std::set<std::vector<u32>> impossible_loops;
     NearTriangles near;
     const std::size_t count = surface.triangles.size();

@@ -17,7 +17,7 @@ double squared_radius_of(const Surface& surface, const Triangle& triangle) {
     return squared_enclosing_radius(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), u.cross(w).norm());
 }
 
-/// The largest squared radius but for those of the large triangles.
+/// The largest squared radius of the triangles that are not large.
 double squared_radius_of_most(const Surface& surface) {
     std::vector<double> radii;
     radii.reserve(surface.triangles.size());
@@ -45,7 +45,8 @@ void NearTriangles::gather_around(const Surface& surface, std::span<const u32> c
     const Vec3& centre = surface.positions[corners[0]];
     double size = 0;
     for (u32 corner : corners) size = std::max(size, (surface.positions[corner] - centre).norm());
-    // The triangulation lies in that ball. A triangle that intersects it has a corner within its enclosing radius.
+    // The triangulation lies in the ball of radius `size`. A triangle that intersects this ball has a corner within its
+    // own enclosing radius from the ball.
     const double reach = (size + std::sqrt(others_squared_radius_)) * (1 + 1e-9);
     points_.assign(1, corners[0]);
     surface.neighbourhoods.within(corners[0], reach * reach, buffer_, points_);

@@ -13,8 +13,9 @@
 
 namespace scanmill::growing {
 
-/// The squared radius of the smallest circle that encloses a triangle of these squared side lengths and this area: the
-/// circumcircle, or the circle over the longest side. No point of the triangle is farther than that from a corner.
+/// The squared radius of the smallest circle that encloses a triangle with squared side lengths a, b, c and the given
+/// area. The circle is the circumcircle or the circle over the longest side. No point of the triangle is farther than
+/// this radius from a corner.
 inline double squared_enclosing_radius(double a, double b, double c, double twice_area) {
     const double longest = std::max({a, b, c});
     if (2 * longest >= a + b + c) return longest / 4;
@@ -24,13 +25,13 @@ inline double squared_enclosing_radius(double a, double b, double c, double twic
 /// The surface's triangles in some region, gathered for several intersection tests.
 class NearTriangles {
 public:
-    /// Gathers all triangles that may intersect a triangulation of these corners. Pre: since the first call the
-    /// surface's list of triangles was only appended to; its fans may have lost triangles and got them back.
+    /// Gathers all triangles that may intersect a triangulation of these corners. Pre: after the first call, triangles
+    /// were only appended to the surface's list; its fans may have lost triangles and got them back.
     void gather_around(const Surface& surface, std::span<const u32> corners);
-    /// Gathers triangles at the triangle's corners and their nearest neighbours that may intersect the triangle.
-    /// With `near`, also those at these points.
+    /// Gathers triangles that may intersect `triangle`: those at its corners, at the nearest neighbours of its corners,
+    /// and at the points `near`.
     void gather_near(const Surface& surface, const Triangle& triangle, std::span<const u32> near = {});
-    /// Whether the triangle intersects one of the gathered ones other than itself. Pre: it lies in the gathered region.
+    /// Whether the triangle intersects a gathered triangle other than itself. Pre: it lies in the gathered region.
     bool intersect(const Surface& surface, const Triangle& triangle) const;
 
 private:
@@ -46,19 +47,20 @@ private:
     };
     static Box box_of(const Surface& surface, std::span<const u32> corners);
     void clear(const Surface& surface);
-    /// Adds the triangles at the point that reach into the box. Each triangle is added once per gathering.
+    /// Adds the triangles at the point whose boxes overlap the region. Each triangle is added once per gathering.
     void gather_at(const Surface& surface, u32 point, const Box& region);
     bool is_visited(u32 point) const { return visited_[point] == gathering_; }
-    /// Adds new triangles of the surface to `large_`. The first call decides what is large: the largest 64, or one in
-    /// 1024. Cost: linear in the triangles once, then in the new ones.
+    /// Adds new triangles of the surface to `large_`. The first call sets the limit such that the largest 64 triangles,
+    /// or one in 1024 if that is more, are large. Cost: linear in all triangles for the first call, then in the new
+    /// ones.
     void update_large(const Surface& surface);
 
     std::vector<Boxed> triangles_;
-    /// Per point the number of the last gathering that visited it.
+    /// For each point, the number of the last gathering that visited it.
     std::vector<u32> visited_;
     u32 gathering_ = 0;
-    /// The few triangles that are much larger than all others. As they are tested one by one, a search for the others
-    /// needs a radius of `others_squared_radius_` only: none of the others has a larger enclosing circle.
+    /// The few triangles that are much larger than all others; they are tested one by one. No other triangle has a
+    /// larger enclosing circle than `others_squared_radius_`, so a search for the others needs this radius only.
     std::vector<Triangle> large_;
     double others_squared_radius_ = 0;
     std::size_t seen_ = 0;

@@ -11,7 +11,7 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Few enough that at a boundary, where they all lie on one side, they belong to the same sheet.
+/// At a boundary all neighbours lie on one side. This number is small enough that they still belong to the same sheet.
 constexpr std::size_t counted_neighbours = 12;
 
 Scatter scatter_at(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point) {

@@ -129,7 +129,8 @@ bool has_angles_of(const Surface& surface, const Triangle& triangle, double leas
     const auto& p = surface.positions;
     const auto& [from, point, to] = triangle;
     const double a = (p[point] - p[to]).norm(), b = (p[point] - p[from]).norm(), c = (p[to] - p[from]).norm();
-    // The smallest angle is opposite the shortest side. Its sine is that side over the diameter of the circumcircle.
+    // The smallest angle is opposite the shortest side. Its sine is the length of this side over the diameter of the
+    // circumcircle.
     const double twice_area = area_vector(p, triangle).norm();
     return std::min({a, b, c}) * twice_area >= least_sine * a * b * c;
 }

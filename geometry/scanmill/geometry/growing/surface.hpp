@@ -18,8 +18,8 @@ inline constexpr u32 invalid_index = ~u32(0);
 /// The triangles around every vertex, in one cache line per vertex.
 ///
 /// Triangle (v, a, b), counter-clockwise, is stored at v as the edge a → b of v's link. The half-edge v → x belongs to
-/// a triangle when a link edge begins with x, the half-edge x → v when a link edge ends with x. So both ends of an edge
-/// refer to both of its triangles.
+/// a triangle if a link edge of v begins with x. The half-edge x → v belongs to a triangle if a link edge of v ends
+/// with x. So each end of an edge refers to both triangles of the edge.
 class Fans {
 public:
     struct LinkEdge {
@@ -30,7 +30,7 @@ public:
         for (Block& block : blocks_) block = {{}, 0, invalid_index};
     }
 
-    /// Calls action(LinkEdge) for every triangle at the vertex until it returns true. Returns whether it did.
+    /// Calls action(LinkEdge) for every triangle at the vertex, until the action returns true. Returns whether it did.
     template <class Action>
     bool any(u32 vertex, Action&& action) const {
         for (u32 index = vertex; index != invalid_index; index = blocks_[index].next)
@@ -70,12 +70,13 @@ public:
     void add(const Triangle& triangle) {
         for (std::size_t i = 0; i < 3; ++i) add(triangle[i], {triangle[(i + 1) % 3], triangle[(i + 2) % 3]});
     }
-    /// Pre: it was added.
+    /// Pre: the triangle was added.
     void remove(const Triangle& triangle) {
         for (std::size_t i = 0; i < 3; ++i) remove(triangle[i], {triangle[(i + 1) % 3], triangle[(i + 2) % 3]});
     }
 
-    /// Reverses all triangles at the vertex. Between calls for all vertices of a component its triangles disagree.
+    /// Reverses all triangles at the vertex. Callers must reverse all vertices of a component; in between, the two fans
+    /// of an edge contradict each other.
     void reverse(u32 vertex) {
         for (u32 index = vertex; index != invalid_index; index = blocks_[index].next)
             for (u32 i = 0; i < blocks_[index].count; ++i)
@@ -115,43 +116,46 @@ private:
                 }
     }
 
-    /// One block per vertex, then further blocks of vertices with more triangles.
+    /// One block per vertex, followed by further blocks of vertices with more triangles than one block can hold.
     Array<Block> blocks_;
 };
 
-/// In no triangle, on the boundary of the surface, or with a closed fan of triangles.
+/// The point is in no triangle (unused), on the boundary of the surface (front), or has a closed fan of triangles
+/// (interior).
 enum class PointState : u8 { unused, front, interior };
 
-/// The limits under which a triangle was formed: 0 the given ones, then relaxed ones in order; closing_pass: it closed
-/// a hole.
+/// The limits under which a triangle was formed. 0: the given limits; 1 and above: relaxed limits in order;
+/// closing_pass: the triangle closed a hole.
 using Pass = u8;
 inline constexpr Pass closing_pass = 4;
 
-/// Cosine of a dihedral deviation (angle between normals) of 150 degrees. Beyond it a triangle lies on its neighbour.
+/// Cosine of a dihedral deviation (angle between normals) of 150 degrees. At larger angles a triangle lies on its
+/// neighbour.
 inline constexpr double fold_cosine = -0.8660254037844387;
 
-/// A surface without triangles at first. Keeps references to the points and the neighbourhoods.
+/// A surface that has no triangles at first. It keeps references to the points and the neighbourhoods.
 struct Surface {
-    /// `search_radii`, `density_radii`: per point. `signs_count`: see `oriented`.
+    /// `search_radii`, `density_radii`: one per point. `signs_count`: see `oriented`.
     Surface(const DistinctPoints& from, const Neighbourhoods& near, PointNormals point_normals,
             Array<double> search_radii, Array<double> density_radii, bool signs_count);
 
     const DistinctPoints& points;
     const Neighbourhoods& neighbourhoods;
     const Array<Vec3>& positions;
-    /// At points of the surface they are on the side of its triangles' normals, at others only when `oriented`.
+    /// At points of the surface, the normals are on the side of the triangles' normals. At other points this holds only
+    /// if `oriented`.
     Array<Vec3> normals;
     /// Surface variation, see PointNormals.
     Array<float> variation;
-    /// Per point: the distance within which points are sought to continue the surface.
+    /// For each point, the distance within which points are sought to continue the surface.
     Array<double> search_radius;
-    /// The search radius that follows from the density alone. Triangles that are small compared with it are as small as
-    /// the points' spacing requires.
+    /// For each point, the search radius that follows from the density alone. Triangles that are small compared with it
+    /// are as small as the points' spacing requires.
     Array<double> density_radius;
-    /// The signs of the normals are known: a triangle must agree with them.
+    /// Whether the signs of the normals are known; a triangle must then agree with them.
     bool oriented;
-    /// The power of two above the longest side of the points' box. Exact predicates use a point this far along a unit
-    /// normal; a shorter distance would lose digits of the normal in the sum.
+    /// The power of two above the longest side of the points' box. Exact predicates use a point at this distance along
+    /// a unit normal. With a shorter distance, the sum would lose digits of the normal.
     double axis_length;
 
     Fans fans;
@@ -160,12 +164,12 @@ struct Surface {
     Array<Pass> passes;
 
     bool is_used(u32 point) const { return states[point] != PointState::unused; }
-    /// Whether given normals put the points on two sides of something thin.
+    /// Whether given normals put the points on two sides of a thin part.
     bool face_apart(u32 a, u32 b) const { return oriented && normals[a].dot(normals[b]) <= 0; }
     /// The next vertex along the boundary, with the surface on the left. Pre: a boundary vertex with one fan.
     u32 next_on_boundary(u32 vertex) const;
-    /// Calls action(vertices) for every boundary loop, from its lowest vertex on; loops ascend by it. The action may
-    /// close the loop. Pre: every vertex has one fan.
+    /// Calls action(vertices) for every boundary loop, starting with its lowest vertex. Loops are sorted by their
+    /// lowest vertex. The action may close the loop. Pre: every vertex has one fan.
     template <class Action>
     void for_each_boundary_loop(Action&& action) const {
         std::vector<bool> visited(states.size(), false);
@@ -184,22 +188,22 @@ struct Surface {
 
     /// Adds a → b → c. Pre: none of its three half-edges has a triangle.
     void add(const Triangle& triangle, Pass pass);
-    /// Removes from the list the triangles that were removed from the fans. Ties: the oldest is removed.
+    /// Removes from the list the triangles that were removed from the fans. Of equal triangles, the oldest is removed.
     void drop(std::vector<Triangle> removed);
 };
 
 /// Whether the sine of the triangle's smallest angle is at least this.
 bool has_angles_of(const Surface& surface, const Triangle& triangle, double least_sine);
 
-/// Whether the cosine between the triangle's normal and that of each of its points is at least `point_cosine`, or at
-/// points at edges `sharp_cosine`. Points at tips agree with every normal. The sign counts at points of the surface,
-/// and at all points if the surface is oriented.
+/// Whether the triangle's normal agrees with the normal of each of its points. The cosine between them must be at least
+/// `point_cosine`, or `sharp_cosine` at points at edges. Points at tips agree with every normal. The sign counts at
+/// points of the surface, and at all points if the surface is oriented.
 bool agrees_with_points(const Surface& surface, const Triangle& triangle, const Vec3& normal, double point_cosine,
                         double sharp_cosine);
 
-/// Removes triangles until those of every vertex form one fan, open or closed. If a vertex has several fans, the one
-/// with most triangles stays, or among equal ones the one with the lowest vertex. Returns how many triangles were
-/// removed. Cost: linear.
+/// Removes triangles until the triangles of every vertex form one fan, open or closed. If a vertex has several fans,
+/// the fan with most triangles stays; of equally large fans, the one with the lowest vertex. Returns the number of
+/// removed triangles. Cost: linear.
 std::size_t remove_extra_fans(Surface& surface);
 
 }  // namespace scanmill::growing

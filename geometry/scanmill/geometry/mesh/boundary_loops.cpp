@@ -14,7 +14,8 @@ namespace scanmill {
 namespace {
 
 constexpr double least_mean_normal = 0.1, least_area = 1e-3;
-/// Two equal loops are summed in opposite directions, so their lengths are rounded differently.
+/// Least ratio at which one loop is longer than another. Two equal loops that are summed in opposite directions have
+/// differently rounded lengths.
 constexpr double longer_by = 1 + 1e-9;
 
 /// The boundary half-edge that starts where this one ends, in the same fan of triangles.
@@ -68,7 +69,7 @@ std::vector<bool> outer_loops(std::span<const std::span<const u32>> loops, std::
     DisjointSets components(opposite.size() / 3);
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge)
         if (opposite[half_edge] < half_edges::no_half_edge) components.unite(half_edge / 3, opposite[half_edge] / 3);
-    std::unordered_map<u32, std::size_t> longest;  // loop of every component; never iterated over
+    std::unordered_map<u32, std::size_t> longest;  // longest loop by component; never iterated over
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const auto [best, is_new] = longest.try_emplace(components.find(loops[i][0] / 3), i);
         if (shapes[i].length > longer_by * shapes[best->second].length) best->second = i;

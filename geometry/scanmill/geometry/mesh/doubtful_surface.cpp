@@ -48,7 +48,7 @@ double rough_share(const TriangleMesh& mesh) {
     std::size_t rough = 0, edges = 0;
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
         const u32 other = opposite[half_edge];
-        if (other >= opposite.size() || other < half_edge) continue;  // counted once; a boundary has no opposite
+        if (other >= opposite.size() || other < half_edge) continue;  // visits every inner edge once
         const Vec3 one = area_vector(mesh.positions, mesh.triangles[half_edge / 3]);
         const Vec3 two = area_vector(mesh.positions, mesh.triangles[other / 3]);
         ++edges;
@@ -64,29 +64,29 @@ std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double n
         const double edge = edge_spacing(mesh), degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
         if (degrees > doubtful_turn)
             doubts.push_back(fmt::format(
-                "the points have noise of {:.3g} u (standard deviation), which turns triangles with edges of "
-                "{:.3g} u by {:.0f} degrees; the workflow raw-scans removes noise, and so does `smooth` "
-                "before the points are thinned",
+                "the points have noise of {:.3g} u (standard deviation), which turns triangles with edges of {:.3g} u "
+                "by {:.0f} degrees: remove the noise with the workflow raw-scans, or with `smooth` before the points "
+                "are thinned",
                 noise, edge, degrees));
     }
     if (const double share = spanned_share(mesh, long_edge); share > doubtful_spanned)
         doubts.push_back(fmt::format(
-            "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans "
-            "gaps between the points: scan the missing part, or remove outliers first",
+            "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges; these triangles "
+            "span gaps between the points: scan the missing part, or remove outliers first",
             100 * share, long_edge));
     else if (const double beside = spanned_share(mesh, long_edge_of_handle); beside > doubtful_spanned_of_handle)
         if (const long genus = topology(mesh).genus.value_or(0); genus > 0)
             doubts.push_back(fmt::format(
                 "the surface has genus {} and spans gaps between the points: {:.2g} % of its area is in triangles with "
-                "an edge longer than {} median edges; parts may be joined, or tunnels filled, that the object does "
-                "not have: scan the missing part, or compare the surface with the object",
+                "an edge longer than {} median edges; the surface may join parts that are separate in the object, or "
+                "fill its tunnels: scan the missing part, or compare the surface with the object",
                 genus, 100 * beside, long_edge_of_handle));
     if (3 * mesh.triangles.size() / 2 <= few_edges) return doubts;
     if (const double share = rough_share(mesh); share > doubtful_rough)
         doubts.push_back(fmt::format(
-            "at {:.0f} % of the surface's edges two triangles meet at more than 60 degrees, because outliers or noise "
-            "as "
-            "large as the spacing crumple it: remove or smooth them first, or thin the scan with larger voxels",
+            "at {:.0f} % of the surface's edges two triangles meet at more than 60 degrees; outliers, or noise as "
+            "large as the spacing, crumple the surface: remove or smooth them first, or thin the scan with larger "
+            "voxels",
             100 * share));
     return doubts;
 }

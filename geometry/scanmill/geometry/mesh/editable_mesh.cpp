@@ -16,8 +16,9 @@ void require_proper_triangles(const TriangleMesh& mesh) {
     if (count == 0) return;
     const auto first = std::ranges::find_if(mesh.triangles, repeated) - mesh.triangles.begin();
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(first)];
-    throw Error("triangle {} has the vertices {}, {} and {}; three different ones are needed (such triangles: {})",
-                first, t[0], t[1], t[2], count)
+    throw Error(
+        "triangle {} has the vertices {}, {} and {}; a triangle needs three different vertices (such triangles: {})",
+        first, t[0], t[1], t[2], count)
         .hint("remove triangles with a repeated vertex first, or mesh the points again with sculpt or region-grow");
 }
 
@@ -84,7 +85,7 @@ void EditableMesh::link(u32 one, u32 other) {
 bool EditableMesh::can_flip(u32 half_edge) const {
     if (is_boundary(half_edge)) return false;
     const u32 c = apex(half_edge), d = apex(opposite_[half_edge]);
-    // An end with too few edges for a flip has the other diagonal among the edges of its neighbours.
+    // If an end of the edge has too few edges for a flip, c and d are already connected.
     return c != d && !has_edge(c, d);
 }
 
@@ -94,7 +95,7 @@ u32 EditableMesh::flip(u32 half_edge) {
     const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(other);
     const u32 bc = opposite_[after(half_edge)], ca = opposite_[before(half_edge)];
     const u32 ad = opposite_[after(other)], db = opposite_[before(other)];
-    // Corner i of the row is the start of half-edge i, so that `half_edge` keeps its number and goes from d to c.
+    // Corner i of the row is the start of half-edge i. So `half_edge` keeps its number; it now goes from d to c.
     const u32 h0 = half_edge, h1 = after(h0), h2 = before(h0), o0 = other, o1 = after(o0), o2 = before(o0);
     corners_[h0] = d, corners_[h1] = c, corners_[h2] = a;
     corners_[o0] = c, corners_[o1] = d, corners_[o2] = b;
@@ -103,7 +104,7 @@ u32 EditableMesh::flip(u32 half_edge) {
     link(o1, db);
     link(o2, bc);
     link(h0, o0);
-    // A half-edge on the boundary stays on it, in another row.
+    // The outer half-edges of the two triangles stay on the boundary, or off it, but change their numbers.
     if (first_[a] == h0 || first_[a] == o1) first_[a] = h2;
     if (first_[b] == o0 || first_[b] == h1) first_[b] = o2;
     if (first_[c] == h2) first_[c] = h1;
@@ -133,7 +134,8 @@ bool EditableMesh::can_remove(u32 vertex, std::span<const RingTriangle> triangul
             const bool in_ring = b == a + 1 || (!is_open && a == size - 1 && b == 0);
             if (!in_ring && has_edge(vertices[a], vertices[b])) return false;
         }
-    // Without a diagonal or a closing edge, the new triangle may be the back of another one: of a tetrahedron.
+    // A closed ring of three vertices gets no new edge. But at a corner of a tetrahedron, the new triangle would be the
+    // reverse of the triangle opposite the corner.
     if (is_open || size > 3) return true;
     const u32 begin = first_[vertex];
     const u32 outside = opposite_[after(begin)];
@@ -173,7 +175,7 @@ void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulatio
         link(along, is_last && is_open ? half_edges::boundary : outside_[a]);
         for (u32 b = a + 2; b < size; ++b)
             if (const u32 diagonal = by_ends_[a * size + b]; diagonal != none) link(diagonal, by_ends_[b * size + a]);
-        // The first half-edge of a boundary vertex is either here or in a row outside.
+        // The first half-edge of a boundary vertex is `along`, or it is in a triangle outside the ring.
         if (is_boundary(along) || !was_boundary_vertex[a]) first_[vertices[a]] = along;
     }
     first_[vertex] = none;

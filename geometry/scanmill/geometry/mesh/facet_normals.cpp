@@ -14,11 +14,11 @@ namespace {
 
 constexpr double thinnest = 1e-9;
 
-/// Zero when the triangle has no area.
+/// The unit normal of a triangle; zero if the triangle has no area.
 Vec3 normal_of(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<const Vec3*, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = &mesh.positions[triangle[i]];
-    // Starts at the lowest corner: rounding must not depend on the triangle's first corner.
+    // Starts at the lowest corner, because rounding must not depend on the triangle's first corner.
     const auto lowest = std::ranges::min_element(p, is_lower, [](const Vec3* v) -> const Vec3& { return *v; });
     std::ranges::rotate(p, lowest);
     Vec3 u = *p[1] - *p[0], v = *p[2] - *p[0], w = *p[2] - *p[1];

@@ -9,24 +9,25 @@
 namespace scanmill {
 
 struct FacetNormals {
-    /// One per triangle. Zero for a triangle with a repeated vertex, and in a connected component without area.
+    /// One per triangle. Zero for a triangle with a repeated vertex, and for all triangles of a connected component
+    /// without area.
     Array<Vec3> unit;
     /// Triangles with a repeated vertex or a height below a billionth of their longest edge.
     std::size_t without_area = 0;
 };
 
-/// A triangle without area takes the normal of a neighbour: across the longest edge whose neighbour has a normal (of
-/// equally long edges, the lower normal by x, y, z). Triangles beside proper ones come first, then their neighbours.
-/// So a flat region triangulated with needles stays flat; the long edge of a needle at a crease is smooth, its short
-/// edges are sharp.
+/// A triangle without area takes the normal of a neighbour: across its longest edge whose neighbour has a normal. Among
+/// equally long edges, the lower normal by x, y, z is taken. Triangles beside proper ones come first, then their
+/// neighbours. So a flat region triangulated with needles stays flat. At a crease, the long edge of a needle is smooth,
+/// and its short edges are sharp.
 ///
-/// Pre: finite positions; `opposite` by half_edges::opposites().
+/// Pre: finite positions; `opposite` is half_edges::opposites(mesh).
 /// Post: no bit depends on the order of the triangles or vertices, nor on a triangle's first corner.
 /// Cost: linear, 24 bytes per triangle.
 FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads);
 
-/// In radians. Angles between normals that differ from a limit by at most this count as equal to it: it covers the
-/// rounding in the facets of a regular prism.
+/// Tolerance of angle comparisons, in radians. It covers the rounding in the facets of a regular prism: an angle
+/// between normals that differs from a limit by at most this counts as equal to the limit.
 inline constexpr double angle_tie = 1e-9;
 
 /// For each vertex the sum of area_vector() over its triangles.

@@ -23,18 +23,18 @@ namespace scanmill {
 
 namespace {
 
-/// Half-edges in a row; each starts where the one before ends. If closed, the last ends where the first starts.
+/// A chain of half-edges: each starts where the previous one ends. If closed, the last one ends where the first starts.
 struct FeatureLine {
     FeatureType type;
     bool closed;
     Array<u32> half_edges;
 };
 
-/// The boundary and sharp edges of a mesh as a graph of numbered vertices, and the lines it is divided into.
+/// The boundary and sharp edges of a mesh as a graph of numbered vertices, divided into lines.
 class FeatureNet {
 public:
     /// `sharp`: whether the edge of a half-edge is sharp; equal for opposite half-edges, false on the boundary.
-    /// `reach`: creases turn over at least this distance.
+    /// `reach`: distance on each side of a vertex over which the turn of a crease is measured.
     FeatureNet(const TriangleMesh& mesh, std::span<const u32> opposite, const std::vector<bool>& sharp,
                double corner_angle, double reach)
         : mesh_(mesh),
@@ -52,8 +52,8 @@ public:
     u32 number_at_end(u32 half_edge) const { return number_[half_edges::end(mesh_, half_edge)]; }
     bool is_corner(u32 number) const { return is_corner_[number]; }
 
-    /// The boundary loops (their type is still preliminary: outer boundary), then the creases; each by the numbers of
-    /// the first two vertices.
+    /// Returns the boundary loops, then the creases. Loops and creases are each sorted by the numbers of their first
+    /// two vertices. All loops have the preliminary type outer boundary.
     std::vector<FeatureLine> lines() const {
         std::vector<FeatureLine> lines;
         for (const Array<u32>& loop : loops_) lines.push_back({FeatureType::outer_boundary, true, loop});
@@ -72,7 +72,7 @@ public:
 
 private:
     struct Crease {
-        u32 end;  ///< number
+        u32 end;  ///< number of the vertex where the sharp edge ends
         u32 half_edge;
     };
 
@@ -93,7 +93,7 @@ private:
         for (u32 number = 0; number < vertices_.size(); ++number) number_[vertices_[number]] = number;
     }
 
-    /// Every sharp edge is in the list of both its vertices, each time with the half-edge that starts there.
+    /// Lists every sharp edge at both of its vertices, each time by the half-edge that starts there.
     void find_creases(const std::vector<bool>& sharp) {
         creases_ = Lists<Crease>(vertices_.size(), [&](auto&& add) {
             for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
@@ -105,8 +105,9 @@ private:
 
     const Vec3& position(u32 number) const { return mesh_.positions[vertices_[number]]; }
 
-    /// Calls visit with the vertices along the line of creases from `from` on, at least one, up to the first that is
-    /// `reach` away or not inside of a line.
+    /// Follows a line of creases from `from` on, first along `crease`, and calls visit with the number of every vertex
+    /// reached. Ends at the first vertex that is at least `reach` away from `from` or that is not between two creases.
+    /// Also ends on returning to `from`.
     template <class Visit>
     void walk(u32 from, Crease crease, double reach, Visit&& visit) const {
         while (crease.end != from) {
@@ -132,7 +133,7 @@ private:
                 ++boundary_edges[number_at_end(half_edge)];
             }
         is_corner_.assign(vertices_.size(), false);
-        Array<double> angles(vertices_.size(), 0.0);  // between the two creases of vertices inside of lines
+        Array<double> angles(vertices_.size(), 0.0);  // turn of the line at every vertex between two creases
         for (u32 number = 0; number < vertices_.size(); ++number) {
             const std::span<const Crease> creases = creases_[number];
             is_corner_[number] = creases.size() + boundary_edges[number] != 2;
@@ -190,8 +191,8 @@ private:
     const TriangleMesh& mesh_;
     std::span<const u32> opposite_;
     Array<u32> vertices_;
-    Array<u32> number_;  // by vertex of the mesh
-    Lists<Crease> creases_;  // by number of the vertex where they start, then of the vertex where they end
+    Array<u32> number_;  // number of every vertex of the mesh
+    Lists<Crease> creases_;  // by the number of the start vertex; each list by `end`
     std::vector<Array<u32>> loops_;
     std::vector<bool> is_corner_;
 };
@@ -228,7 +229,7 @@ double length_of(const TriangleMesh& mesh, std::span<const u32> half_edges) {
     return length;
 }
 
-/// Unmarks the creases that are too short; returns how many.
+/// Unmarks the edges of the creases shorter than `min_length`; returns the number of these creases.
 std::size_t drop_short(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const FeatureLine> lines,
                        double min_length, std::vector<bool>& sharp) {
     std::size_t dropped = 0;
@@ -240,7 +241,7 @@ std::size_t drop_short(const TriangleMesh& mesh, std::span<const u32> opposite, 
     return dropped;
 }
 
-/// Sets the type of the loops; returns the number of those whose area does not decide it. Pre: the loops come first.
+/// Sets the type of the loops; returns the number of loops whose area does not decide it. Pre: loops precede creases.
 std::size_t classify_loops(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
                            std::vector<FeatureLine>& lines) {
     std::vector<std::span<const u32>> loops;
@@ -333,12 +334,12 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
 std::vector<std::string> doubts(const FeatureCounts& counts) {
     std::vector<std::string> sentences;
     if (counts.without_area > 0)
-        sentences.push_back(count_text(counts.without_area, "triangle", "triangles") +
-                            " without area: counted to a neighbour's plane");
+        sentences.push_back(count_text(counts.without_area, "triangle has no area and takes the normal of a neighbour",
+                                       "triangles have no area and take the normals of neighbours"));
     if (counts.ambiguous > 0)
-        sentences.push_back(count_text(counts.ambiguous, "boundary loop", "boundary loops") +
-                            " whose area does not decide between outer boundary and hole: the longest loop of a "
-                            "component counts as its outer boundary");
+        sentences.push_back("the area of " + count_text(counts.ambiguous, "boundary loop", "boundary loops") +
+                            " does not decide between outer boundary and hole; such a loop is an outer boundary if it "
+                            "is the longest loop of its component, otherwise a hole");
     return sentences;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The triangulation of a polygon with the least cost, by dynamic programming over all triangulations (Klincsek 1980).
+/// Triangulates a polygon with the least cost, by dynamic programming over all triangulations (Klincsek 1980).
 
 #include <array>
 #include <limits>
@@ -17,13 +17,14 @@ public:
 
     /// Finds the triangulation with the least sum of costs; false if there is none.
     ///
-    /// `edge_cost(i, j)`: of an edge across the polygon; called at most once for each. `triangle_cost(i, k, j)`: of a
-    /// triangle without its edges. Both return `impossible` for what is not allowed. `accepts(i, k, j)`: the last test
-    /// of a triangle that lowers the cost of the part beyond its edge i j, for tests that take long. If it is true, the
-    /// triangle is that part's until a cheaper one is accepted.
+    /// `edge_cost(i, j)`: cost of an edge across the polygon; called at most once for each edge. `triangle_cost(i, k,
+    /// j)`: cost of a triangle without its edges. Both return `impossible` for an edge or triangle that is not allowed.
+    /// `accepts(i, k, j)`: last test of a triangle at edge i j, meant for slow tests. It is called only for a triangle
+    /// that lowers the cost of the part of the polygon from corner i to corner j. If it returns true, the triangle is
+    /// used for that part unless a cheaper one is accepted later.
     ///
-    /// Ties: the lowest k. Parts are solved separately, so if `accepts` depends on their triangles, the result need not
-    /// be the least. Cost: corners³ / 6 triangles.
+    /// Ties: the lowest k. Parts are solved separately. So if `accepts` depends on the triangles of the parts, the sum
+    /// need not be the least. Cost: corners³ / 6 triangles.
     template <class EdgeCost, class TriangleCost, class Accepts>
     bool solve(u32 corners, EdgeCost&& edge_cost, TriangleCost&& triangle_cost, Accepts&& accepts) {
         corners_ = corners;
@@ -50,7 +51,8 @@ public:
         return least_[index(0, corners - 1)] < impossible;
     }
 
-    /// Each after those beyond its edges i k and k j, in this order. Pre: solve() was true.
+    /// The triangles (i, k, j). Each triangle follows the triangles beyond its edge i k, then those beyond k j. Pre:
+    /// the last call of solve() returned true.
     std::vector<std::array<u32, 3>> triangles() const {
         std::vector<std::array<u32, 3>> found;
         collect(0, corners_ - 1, found);
@@ -70,8 +72,8 @@ private:
     }
 
     u32 corners_ = 0;
-    std::vector<double> least_;  ///< by edge: cost of the part beyond it, with its own
-    std::vector<u32> apexes_;  ///< by edge: k of that part's triangle
+    std::vector<double> least_;  ///< by edge i j: cost of the part from i to j, including the edge
+    std::vector<u32> apexes_;  ///< by edge i j: k of the triangle at the edge
 };
 
 }  // namespace scanmill

@@ -50,14 +50,15 @@ Lists<> triangles_of(const TriangleMesh& mesh) {
 
 // ---- noise
 
-/// Distances of a vertex from the quadrics that fit it and the vertices within two, and within three, edges best.
+/// Distances of a vertex from two quadrics: those that best fit the vertices within two, and within three, edges.
 struct FromQuadrics {
     double two = 0, three = 0;
     bool known = false;
 };
 
-/// Only the share 1 - leverage of an error remains in a distance; the leverage of the middle of a disc of n points is
-/// 4 / n.
+/// The distance of the first offset from the quadric that fits all offsets best; empty if they do not determine one.
+/// The point pulls the quadric towards itself: only the share 1 - leverage of its variance remains, so the distance is
+/// corrected. The leverage of the middle of a disc of n points is 4 / n.
 std::optional<double> distance_from_quadric(std::vector<Vec3> offsets) {
     constexpr std::size_t coefficients = 6;
     if (offsets.size() <= coefficients) return std::nullopt;
@@ -67,7 +68,8 @@ std::optional<double> distance_from_quadric(std::vector<Vec3> offsets) {
     return jet.offset.norm() / std::sqrt(1 - 4 / static_cast<double>(offsets.size()));
 }
 
-/// Unknown unless every ring of neighbours has more vertices than the one before: else the surface ends or closes.
+/// Unknown unless every ring of neighbours has more vertices than the ring inside it; otherwise the surface ends or
+/// closes.
 FromQuadrics distances_from_quadrics(const TriangleMesh& mesh, const Lists<>& neighbours, u32 vertex) {
     std::vector<u32> ring{vertex}, inner;  // sorted
     std::vector<Vec3> offsets{Vec3::Zero()};
@@ -92,8 +94,9 @@ FromQuadrics distances_from_quadrics(const TriangleMesh& mesh, const Lists<>& ne
     return result;
 }
 
-/// Positive at a convex edge. The four heights of two triangles over their mean plane satisfy one linear equation if
-/// they lie in a plane; its error for coefficients of unit length.
+/// Distance of two triangles at edge (a, b) from a common plane; positive at a convex edge. The heights of four
+/// coplanar points over any plane satisfy one linear equation. The distance is the residual of this equation for the
+/// heights over the mean plane of the triangles, with coefficients of unit length.
 double distance_from_plane(const Vec3& a, const Vec3& b, const Vec3& left, const Vec3& right) {
     const Vec3 edge = b - a, one = edge.cross(left - a), two = (right - a).cross(edge);
     const Vec3 normal = (one + two).normalized();
@@ -101,11 +104,12 @@ double distance_from_plane(const Vec3& a, const Vec3& b, const Vec3& left, const
     const Vec3 across = left - right;
     const double area_a = across.cross(b - right).dot(normal), area_b = (a - right).cross(across).dot(normal);
     const double size = std::sqrt(area_left * area_left + area_right * area_right + area_a * area_a + area_b * area_b);
-    // The signed volume of the four, over their areas.
+    // The signed volume (times 6) of the tetrahedron of the four points, divided by the length of the area
+    // coefficients.
     return size > 0 ? -one.dot(right - a) / size : 0;
 }
 
-/// Every k-th vertex, roughly, by a hash of the position.
+/// Selects roughly every k-th vertex by a hash of the position.
 bool is_sample(const Vec3& position, std::size_t k) {
     u64 hash = 0;
     for (const double coordinate : position)
@@ -123,8 +127,9 @@ double quantile(std::vector<double>& values, double share) {
 
 Matrix product(const Vec3& v) { return v * v.transpose(); }
 
-/// Whether the second largest eigenvalue of a symmetric matrix is at least `value`: at most one eigenvalue of
-/// M - value I is negative, and by Sylvester's law as many are as the signs of the leading minors change.
+/// Whether the second largest eigenvalue of a symmetric matrix M is at least `value`, that is, whether at most one
+/// eigenvalue of M - value I is negative. By Sylvester's law, the number of negative eigenvalues is the number of sign
+/// changes in the sequence of leading minors.
 bool middle_reaches(const Matrix& m, double value) {
     if (m.trace() < 2 * value) return false;
     const Matrix shifted = m - value * Matrix::Identity();
@@ -137,15 +142,15 @@ bool middle_reaches(const Matrix& m, double value) {
 struct Limits {
     double variance;  ///< variance of a vertex position
     double reliable;  ///< least λ of a reliable normal
-    double visible;  ///< times √(n - 3): least λ where a crease of the angle is visible
+    double visible;  ///< times √(n - 3): least λ at which a crease of the angle is visible
 
     Limits(double noise, double angle, std::size_t triangles) {
         const double z = std::sqrt(2 * elementary::log(1.5 * static_cast<double>(triangles)));
         variance = noise * noise;
         reliable = 2 * z * z * variance / (angle * angle);
-        // The squared distances from the best plane of a disc with a crease through its middle sum up to 0.28 λ
-        // tan²(angle / 2); those by noise to (n - 3) σ² with a standard deviation of √(2 (n - 3)) σ². Both sums keep to
-        // their side of the middle by z of these.
+        // Take n points of a disc with a crease through its middle. The crease adds about 0.28 λ tan²(angle / 2) to the
+        // sum of squared distances from the best plane. Noise adds (n - 3) σ² with a standard deviation of √(2 (n - 3))
+        // σ². The crease is visible if it adds at least 2 z of these standard deviations: each sum may be off by z.
         constexpr double of_a_crease = 1 - 64 / (9 * std::numbers::pi * std::numbers::pi);
         const auto [cosine, sine] = elementary::turn_of(std::min(angle, std::numbers::pi / 2) / 2);
         const double slope = sine / cosine;
@@ -155,15 +160,15 @@ struct Limits {
 
 struct Plane {
     Vec3 normal = Vec3::Zero();
-    double error = std::numeric_limits<double>::infinity();  ///< mean square, of the slope
+    double error = std::numeric_limits<double>::infinity();  ///< mean square error of the slope
 };
 
 /// Nested neighbourhoods: the first n vertices for every n.
 struct Neighbourhoods {
     std::vector<u32> vertices;
-    /// Per n - 1: the best plane of n and more vertices.
+    /// best[n - 1]: the best plane of the first n, or more, vertices.
     std::vector<Plane> best;
-    double radius = 0;  ///< squared, of the largest
+    double radius = 0;  ///< squared radius of the largest neighbourhood
 };
 
 class Grower {
@@ -233,12 +238,13 @@ private:
     const Lists<>& neighbours_;
     std::span<const Vec3> areas_;
     const Limits& limits_;
-    std::vector<u32> reached_;  ///< by vertex: the last round
+    std::vector<u32> reached_;  ///< by vertex: the last round that reached it
     u32 round_ = 0;
     std::vector<Waiting> waiting_;
 };
 
-/// One for each block of work that runs at a time: a new one clears an array of all vertices.
+/// A pool of growers, one for each block of work that runs at the same time. A new grower costs an array over all
+/// vertices.
 class Growers {
 public:
     explicit Growers(std::function<std::unique_ptr<Grower>()> make) : make_(std::move(make)) {}
@@ -352,7 +358,7 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
     const Array<Vec3> areas = vertex_area_vectors(mesh);
     const std::vector<u32> centres = near_vertices(mesh, neighbours, unreliable);
     constexpr u32 outside = ~u32(0);
-    std::vector<u32> rank(mesh.positions.size(), outside);  // by vertex, in the current neighbourhood
+    std::vector<u32> rank(mesh.positions.size(), outside);  // of every vertex in the current neighbourhood
     std::vector<double> radii;  // squared
     const auto offer = [&](const Neighbourhoods& found) {
         radii.push_back(found.radius);

@@ -35,7 +35,7 @@ std::vector<bool> declared_sharp_half_edges(const TriangleMesh& mesh, std::span<
     throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
                 count_text(declared.size(), "sharp edge", "sharp edges"),
                 by_count(static_cast<std::size_t>(missing), "is an edge", "are edges"), first[0], first[1])
-        .hint("write the mesh again with the sharp edges of its own triangles, or without any");
+        .hint("write the mesh again without sharp edges, or only with sharp edges that are edges of its triangles");
 }
 
 std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,

@@ -12,8 +12,8 @@ namespace scanmill {
 
 namespace {
 
-// Weights of a polynomial of degree d are numbered like PatchWeights. The weight of degree 3 with exponents e + unit(m)
-// belongs to the m-th argument of the weight of degree 2 with exponents e.
+// Weights of a polynomial of degree d are numbered like PatchWeights. De Casteljau's step: the weight of degree d - 1
+// with exponents e is the sum over m of coordinate m times the weight of degree d with exponents e + unit(m).
 
 constexpr int number_of(int degree, int i, int j, int k) {
     int number = 0;
@@ -26,7 +26,7 @@ constexpr int number_of(int degree, int i, int j, int k) {
     return -1;
 }
 
-/// For each weight of degree `degree - 1` the numbers of the four weights of degree `degree` that it is made of.
+/// For each weight of degree `degree - 1`, the numbers of the four weights of degree `degree` of which it is the sum.
 template <int degree, int count>
 constexpr std::array<std::array<int, 4>, count> raised() {
     std::array<std::array<int, 4>, count> table{};
@@ -97,7 +97,7 @@ Vec3 PatchCell::point(const Barycentric& at) const {
 }
 
 Eigen::Matrix3d PatchCell::hessian(const Vec3& point) const {
-    // The polar form at the point and two corners is a weight of degree 2.
+    // The polar form with the point as one argument and two corners as the others is a weight of degree 2.
     const auto quadratic = lowered<10>(to_quadratic, *weights_, coordinates(point));
     Eigen::Matrix4d second;
     for (int m = 0, number = 0; m < 4; ++m)
@@ -142,7 +142,8 @@ std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& 
 }
 
 std::vector<double> zeros_of_cubic(const std::array<double, 4>& c) {
-    // Halves the interval until the weights change sign at most once. A zero at an end belongs to the part after it.
+    // Halves the interval until the weights change sign at most once. A zero at a common end of two parts belongs to
+    // the second.
     struct Part {
         double begin, length;
         std::array<double, 4> c;
@@ -191,7 +192,8 @@ BoundingBox box_of(const PatchComplex& patches, std::size_t tet) {
     return box;
 }
 
-/// A tree of degenerate triangles, the diagonals of the tetrahedra's boxes, which have the same boxes.
+/// A tree of the diagonals of the tetrahedra's boxes, as degenerate triangles. A diagonal has the same box as its
+/// tetrahedron.
 TriangleTree tree_of(const PatchComplex& patches, unsigned threads) {
     Array<Vec3> ends;
     Array<Triangle> diagonals;
@@ -207,12 +209,13 @@ TriangleTree tree_of(const PatchComplex& patches, unsigned threads) {
 
 constexpr double outside_by = 1e-9;  // a coordinate of a point on a face may be below 0 by rounding
 constexpr int pieces_per_diagonal = 64, most_steps = 50, most_halvings = 20;
-// Shares of the diagonal.
+// The next constants are shares of the diagonal.
 constexpr double on_surface = 1e-15, end_of_steps = 1e-13, nearly_end = 1e-7, near_vertex = 1e-5;
-constexpr double least_slope = 0.1;  // that Newton's method divides by
-constexpr double nearly_normal = 1e-3;  // sine, where the steps get no nearer
+constexpr double least_slope = 0.1;  // Newton's method divides by no smaller slope
+constexpr double nearly_normal =
+    1e-3;  // sine of the angle to the normal at which a foot is accepted if no step comes nearer
 
-/// Rows, ascending, of the tetrahedra whose boxes contain the point.
+/// Rows of the tetrahedra whose boxes contain the point, ascending.
 Array<u32> rows_near(const TriangleTree& boxes, const Vec3& point) {
     Array<u32> rows;
     BoundingBox box;
@@ -240,7 +243,7 @@ std::optional<u32> PatchSurface::locate(const Vec3& point) const {
 u32 PatchSurface::active(u32 tet, const Vec3& point) const {
     const u32 partner = patches_.partners[tet];
     if (partner == PatchComplex::no_partner) return tet;
-    // If both are equal, the first row holds.
+    // If both values are equal, the first row is active.
     const u32 first = std::min(tet, partner), second = std::max(tet, partner);
     const double one = cell(first).value(point), other = cell(second).value(point);
     return (patches_.combine[tet] == Combine::max ? other > one : other < one) ? second : first;
@@ -263,7 +266,7 @@ std::optional<Eigen::Matrix3d> PatchSurface::hessian(const Vec3& point) const {
 
 bool PatchSurface::is_inside(const Vec3& point) const {
     if (const auto here = value(point)) return *here < 0;
-    // The first hit leaves the object, or enters it.
+    // The first hit leaves the object if the point is inside, and enters it if the point is outside.
     const Vec3 direction(2 * box_.diagonal(), 0, 0);
     const auto hit = first_hit(point, direction);
     return hit && hit->gradient.dot(direction) > 0;
@@ -294,8 +297,8 @@ std::optional<PatchSurface::Hit> PatchSurface::hit_in(u32 tet, const Vec3& from,
     const u32 partner = patches_.partners[tet];
     if (partner == PatchComplex::no_partner)
         return zeros.empty() ? std::nullopt : std::optional(hit_at(zeros.front(), tet));
-    // The first zero of one function at which the other one does not hold.
-    if (partner < tet) return std::nullopt;  // found from there
+    // Searches for the first zero of a row's function at which this row is active.
+    if (partner < tet) return std::nullopt;  // the call for the partner finds it
     const PatchCell there = cell(partner);
     const Barycentric other_start = there.coordinates(from),
                       other_change = there.coordinates(from + direction) - other_start;
@@ -316,7 +319,7 @@ std::optional<PatchSurface::Hit> PatchSurface::hit_in(u32 tet, const Vec3& from,
 }
 
 std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const Vec3& direction) const {
-    // Only the part within the box matters.
+    // Only the part of the segment within the box matters.
     double begin = 0, end = 1;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = box_.low[axis] - from[axis], high = box_.high[axis] - from[axis];
@@ -347,7 +350,7 @@ std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const
             if (hit && (!nearest || hit->share < nearest->share)) nearest = hit;
         }
         if (nearest && nearest->share <= last) return nearest;
-        // A hit farther on is found again, unless rounding puts it just behind the last piece.
+        // A hit beyond this piece is found again in a later piece. Rounding may put a hit just behind the last piece.
         if (nearest && piece + 1 == pieces) return nearest;
     }
     return std::nullopt;
@@ -372,7 +375,7 @@ bool PatchSurface::retract(Vec3& point, Local& here) const {
         if (!(squared > 0)) return false;
         Vec3 change = here.gradient * (-here.value / squared);
         if (change.norm() <= enough) return true;
-        // A step that is too long leaves the tetrahedra, or passes the surface.
+        // A step that is too long leaves the tetrahedra or passes the surface; it is halved.
         int halvings = 0;
         for (;; ++halvings, change /= 2) {
             if (halvings == most_halvings) return change.norm() <= nearly_end * enough / on_surface;
@@ -401,9 +404,9 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
         const Vec3 aside = to - height * normal;
         const Foot found{x, height < 0 ? -distance : distance};
         if (aside.norm() <= end_of_steps * diagonal) return found;
-        // In the tangent plane the derivative of `aside` is -(I + height * second derivative / gradient). An eigenvalue
-        // of the matrix in brackets is almost 0 near a centre of curvature. Beyond the centre it is negative, and x is
-        // not the nearest point.
+        // In the tangent plane the derivative of `aside` is -M with M = I + height * second derivative / gradient. An
+        // eigenvalue of M is almost 0 near a centre of curvature. Beyond this centre it is negative, and x is not the
+        // nearest point.
         const Vec3 u = aside.normalized(), v = normal.cross(u);
         const Eigen::Matrix3d second = cell(here.tet).hessian(x) * (height / length);
         Eigen::Matrix2d slope;
@@ -428,7 +431,7 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
         }
         if (is_nearer) continue;
         if (aside.norm() <= nearly_normal * distance) return found;
-        // Here two functions meet, or the surface ends.
+        // At x, two functions meet, or the surface ends.
         const auto on_crease = foot_on_crease(point, x, here.tet);
         return on_crease && std::abs(on_crease->distance) <= distance + nearly_end * diagonal ? on_crease
                                                                                               : std::nullopt;
@@ -463,7 +466,8 @@ std::optional<PatchSurface::Foot> PatchSurface::foot_on_crease(const Vec3& point
     for (int step = 0; step < most_steps; ++step) {
         Vec3 change = step_on_crease(point, x, tet);
         if (change.norm() <= end_of_steps * diagonal) return found();
-        // More slowly where steps pass the nearest point: its distance from the centre of curvature is small.
+        // If a full step is not shorter than the last one, the steps pass the nearest point: `point` is near the
+        // crease's centre of curvature. Smaller steps then converge.
         if (was_whole && change.norm() >= before) share /= 2;
         before = change.norm();
         change *= share;
@@ -477,7 +481,7 @@ std::optional<PatchSurface::Foot> PatchSurface::foot_on_crease(const Vec3& point
             has_moved = true;
         }
         if (has_moved) continue;
-        // At the end of a crease others may begin.
+        // Other creases may begin where this one ends.
         const auto& corners = patches_.tets[tet];
         const u32 end =
             *std::ranges::min_element(corners, {}, [&](u32 v) { return (patches_.positions[v] - x).squaredNorm(); });

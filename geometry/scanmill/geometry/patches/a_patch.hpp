@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Evaluates A-patches: cubic polynomials in Bernstein-Bezier form over tetrahedra. PatchCell is one tetrahedron,
-/// PatchSurface the whole complex: value, gradient and second derivatives at a point, inside or outside, the first hit
-/// of a ray, the nearest point of the surface. tests/geometry/patches/a_patch_example.hpp shows its use.
+/// Evaluates A-patches: cubic polynomials in Bernstein-Bezier form over tetrahedra. PatchCell is one tetrahedron.
+/// PatchSurface is the whole complex. It computes the value, gradient and second derivatives at a point, inside or
+/// outside, the first hit of a ray, and the nearest point of the surface. tests/geometry/patches/a_patch_example.hpp
+/// shows its use.
 ///
-/// Beside sharp edges two rows of the complex share a tetrahedron (PatchComplex::partners): there the function is the
-/// larger or the smaller of theirs, and its derivatives are those of that one.
+/// Beside sharp edges, two rows of the complex share a tetrahedron (PatchComplex::partners). There the function is the
+/// larger or the smaller of the two rows' functions. The row that gives this value is *active*; derivatives are those
+/// of its function.
 ///
 /// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. Functions of one tetrahedron cost a
-/// few hundred operations; none uses a libm function whose result depends on the processor. Everything is safe from
+/// few hundred operations. They use no libm function whose result depends on the processor. All functions are safe from
 /// several threads.
 
 #include <Eigen/Core>
@@ -24,9 +26,10 @@ using Barycentric = Eigen::Vector4d;
 
 /// The value at the point with these coordinates.
 double patch_value(const PatchWeights& weights, const Barycentric& at);
-/// The polar form f(a, b, c): symmetric, affine in each argument, and f(a, a, a) is the value at a.
+/// The polar form f(a, b, c). It is symmetric and affine in each argument; f(a, a, a) is the value at a.
 double patch_blossom(const PatchWeights& weights, const Barycentric& a, const Barycentric& b, const Barycentric& c);
-/// The derivatives by the four coordinates. By the position x: the sum of each times the gradient of its coordinate.
+/// The derivatives by the four coordinates. The gradient by position is the sum of the coordinates' gradients, each
+/// times its derivative.
 Eigen::Vector4d patch_derivatives(const PatchWeights& weights, const Barycentric& at);
 
 /// A tetrahedron with its function.
@@ -45,32 +48,34 @@ public:
     Vec3 gradient(const Barycentric& at) const { return gradients_ * patch_derivatives(*weights_, at); }
     Vec3 gradient(const Vec3& point) const { return gradient(coordinates(point)); }
     Eigen::Matrix3d hessian(const Vec3& point) const;
-    /// The value over the length of the gradient: to first order the signed distance to the surface (Taubin 1991).
-    /// Infinite or NaN where the gradient is 0.
+    /// The value divided by the length of the gradient. To first order, this is the signed distance to the surface
+    /// (Taubin 1991). Infinite or NaN where the gradient is 0.
     double first_order_distance(const Vec3& point) const;
     const PatchWeights& weights() const { return *weights_; }
 
 private:
     std::array<Vec3, 4> corners_;
-    Eigen::Matrix<double, 3, 4> gradients_;  ///< of the four coordinates
+    Eigen::Matrix<double, 3, 4> gradients_;  ///< gradients of the four coordinates
     const PatchWeights* weights_;
 };
 
-/// The Bernstein weights at 0, 1/3, 2/3 and 1 of the function on the segment between two points.
+/// The Bernstein weights at 0, 1/3, 2/3 and 1 of the function along the segment between two points.
 std::array<double, 4> patch_along(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
 
-/// The zero t in [0, 1] of the cubic with these Bernstein weights at 0, 1/3, 2/3 and 1, to the last bits; nothing if
-/// the first and the last weight have one sign and are not 0. Pre: at most one zero.
+/// The zero t in [0, 1] of the cubic with these Bernstein weights at 0, 1/3, 2/3 and 1, accurate to the last bits.
+/// Empty if the first and the last weight have one sign and are not 0. Pre: at most one zero.
 std::optional<double> zero_of_cubic(const std::array<double, 4>& weights);
 
-/// The point where the segment from `from` to `to` meets the surface, as its share t of the segment.
+/// The share t of the segment at which the segment meets the surface. Empty, and with the precondition, as
+/// zero_of_cubic().
 std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
 
-/// The zeros t in [0, 1] of any cubic, ascending, to about 1e-15. Of one that is 0 everywhere: 0.
+/// The zeros t in [0, 1] of any cubic, ascending, accurate to about 1e-15. For the cubic that is 0 everywhere: only t =
+/// 0.
 std::vector<double> zeros_of_cubic(const std::array<double, 4>& weights);
 
-/// Evaluates a complex at points and along rays. Points outside all of them have no value: the function
-/// is defined near the surface only.
+/// Evaluates a complex at points and along rays. The function is defined near the surface only: points outside all
+/// tetrahedra have no value.
 class PatchSurface {
 public:
     struct Hit {
@@ -80,7 +85,7 @@ public:
         Vec3 gradient;
     };
     struct Foot {
-        Vec3 point;       ///< on the surface
+        Vec3 point;  ///< on the surface
         double distance;  ///< positive outside the object, negative inside
     };
 
@@ -88,49 +93,50 @@ public:
     /// tetrahedron.
     explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
 
-    /// The tetrahedron that contains the point: the first row if several do, and of two partners the one whose function
-    /// holds at the point. Cost: O(log n).
+    /// The tetrahedron that contains the point. If several do, the first row; of two partners, the active row. Cost:
+    /// O(log n).
     std::optional<u32> locate(const Vec3& point) const;
     PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
 
-    /// Negative inside the object, positive outside; near the surface about the distance.
+    /// The value is negative inside the object and positive outside. Near the surface it is about the distance.
     std::optional<double> value(const Vec3& point) const;
     std::optional<Vec3> gradient(const Vec3& point) const;
     std::optional<Eigen::Matrix3d> hessian(const Vec3& point) const;
 
-    /// Whether the point is inside the object. Away from the tetrahedra a ray decides. Pre: a closed surface.
+    /// Whether the point is inside the object. For points outside all tetrahedra a ray decides. Pre: a closed surface.
     bool is_inside(const Vec3& point) const;
 
-    /// The first point of the surface on the segment from + t * direction, 0 <= t <= 1. Cost: O(log n) times the
-    /// length over a 64th of the complex's diagonal.
+    /// The first point of the surface on the segment from + t * direction, 0 <= t <= 1. Cost: O(log n) for each 64th of
+    /// the complex's diagonal along the segment.
     std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction) const;
 
-    /// The point of the surface whose distance to `point` is least among its neighbours, by Newton's method along the
-    /// surface from near `start`, always towards `point`; or along a crease, where that leads there. The nearest one of
-    /// all, if `start` is on the same slope. Empty if `start` is outside the tetrahedra, or the way leads over the
-    /// boundary of an open surface.
+    /// A point of the surface whose distance to `point` is a local minimum. Newton's method starts near `start` and
+    /// moves along the surface, always towards `point`; it continues along a crease if it arrives at one. The result is
+    /// the nearest point of all if `start` is on the same slope. Empty if `start` is outside the tetrahedra, or if the
+    /// path crosses the boundary of an open surface.
     std::optional<Foot> foot(const Vec3& point, const Vec3& start) const;
-    /// Starts at `point` itself: finds the nearest foot if `point` is nearer than the radius of curvature.
+    /// The same with `point` as start. Finds the nearest point if `point` is nearer to the surface than the radius of
+    /// curvature.
     std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
 
 private:
-    /// Chooses between a tetrahedron and its partner the one whose function holds at the point.
+    /// The active row of a tetrahedron and its partner at the point.
     u32 active(u32 tet, const Vec3& point) const;
-    /// The function near a point.
+    /// The function at a point.
     struct Local {
         u32 tet;
         double value;
         Vec3 gradient;
     };
-    /// Looks in tetrahedron `hint` first.
+    /// Evaluates the function; tries tetrahedron `hint` first. Empty outside all tetrahedra.
     std::optional<Local> local(const Vec3& point, std::optional<u32> hint) const;
-    /// Moves a point onto the surface along gradients.
+    /// Moves a point onto the surface along gradients; returns whether it converged.
     bool retract(Vec3& point, Local& here) const;
-    /// The tetrahedra with two functions that contain the point; of partners the lower row.
+    /// The tetrahedra with two functions that contain the point; of two partners, the lower row.
     std::vector<u32> with_creases_at(const Vec3& point) const;
-    /// The step from x to the crease, and along its tangent to the point nearest to `point`.
+    /// The Newton step from x to the crease in `tet`, and along its tangent to the point nearest to `point`.
     Vec3 step_on_crease(const Vec3& point, const Vec3& x, u32 tet) const;
-    /// The same as foot() along the creases, from one in a tetrahedron.
+    /// foot() along creases; starts with the crease in tetrahedron `tet`.
     std::optional<Foot> foot_on_crease(const Vec3& point, const Vec3& start, u32 tet) const;
     std::optional<Hit> hit_in(u32 tet, const Vec3& from, const Vec3& direction) const;
 

@@ -10,8 +10,8 @@ namespace scanmill {
 
 namespace {
 
-/// Two numbers that the processor computes with at once. Comparisons choose between values, without branches: these
-/// could not be predicted.
+/// Two numbers that the processor computes with at the same time. Comparisons select values without branches, because
+/// such branches cannot be predicted.
 using Pair = double __attribute__((vector_size(16)));
 
 /// Unevaluated sums of two doubles: about 32 digits.
@@ -19,24 +19,24 @@ struct DoubleDouble {
     Pair value, rest;
 };
 
-/// Exact (Knuth).
+/// The exact sum (Knuth).
 DoubleDouble sum_of(Pair a, Pair b) {
     const Pair sum = a + b, part = sum - a;
     return {sum, (a - (sum - part)) + (b - part)};
 }
 
-/// The upper 26 bits (Veltkamp).
+/// The upper 26 bits of the significand (Veltkamp).
 Pair upper_half(Pair x) {
     const Pair shifted = 0x8000001p0 * x;
     return shifted - (shifted - x);
 }
 
-/// Exact (Dekker).
+/// The exact product (Dekker).
 DoubleDouble product_of(Pair a, Pair b) {
     const Pair product = a * b, a_high = upper_half(a), a_low = a - a_high, b_high = upper_half(b), b_low = b - b_high;
     return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
-/// The same for an `a` of at most 26 bits.
+/// The exact product for an `a` of at most 26 bits.
 DoubleDouble product_of_short(Pair a, Pair b) {
     const Pair product = a * b, b_high = upper_half(b), b_low = b - b_high;
     return {product, (a * b_high - product) + a * b_low};
@@ -58,10 +58,10 @@ constexpr std::array<Constant, 9> arctan_of_eighths{{{0.0, 0.0},
                                                      {0.7188299996216245, -2.1478388444456983e-17},
                                                      {0.7853981633974483, 3.061616997868383e-17}}};
 
-/// arctan(low / high) = arctan q + arctan r with the multiple q of 1/8 nearest to low / high and
-/// r = (low - q high) / (high + q low). As |r| ≤ 1/16, r^15 / 15, the first term of the Taylor series of arctan r that
-/// is left out, is below 2^-59 r. The terms from r^3 on are below r / 768: plain doubles suffice for them.
-/// Pre: 0 ≤ low ≤ high, high > 0.
+/// Computes arctan(low / high) = arctan q + arctan r. q is the multiple of 1/8 nearest to low / high, and r = (low - q
+/// high) / (high + q low), so |r| ≤ 1/16. The Taylor series of arctan r ends before r^15 / 15, which is below 2^-59 r.
+/// The terms from r^3 on are below r / 768, so plain doubles are accurate enough for them. Pre: 0 ≤ low ≤ high, high >
+/// 0.
 DoubleDouble arctan(Pair low, Pair high) {
     const Pair zero{}, one = zero + 1;
     Pair eighths = zero;

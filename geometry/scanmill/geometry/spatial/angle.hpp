@@ -2,7 +2,7 @@
 #pragma once
 /// Angles whose bits do not depend on the processor.
 ///
-/// The C library chooses between variants of atan2, sin and the like by the processor, and their last bits differ.
+/// The C library chooses variants of atan2, sin and similar functions by the processor, and their last bits differ.
 /// Decisions by angles, or by sums of angles, use these functions instead. They consist of +, -, *, /, sqrt and
 /// comparisons, which IEEE 754 rounds in exactly one way. (All of Scanmill is compiled with -ffp-contract=off.)
 
@@ -12,7 +12,7 @@
 
 namespace scanmill {
 
-/// The angle in [0, π], in radians, whose cosine and sine have the ratio of `cosine` to `sine`; 0 if both are 0.
+/// The angle of the direction (cosine, sine), in radians, in [0, π]; 0 if both are 0. They need not have unit length.
 ///
 /// Pre:   sine ≥ 0.
 /// Error: at most 0.52 units in the last place; about one result in 10,000 is not the nearest double. Multiples of 45°
@@ -22,7 +22,8 @@ double angle_of(double cosine, double sine);
 /// The angle between two vectors, in radians, in [0, π]; 0 if one of them is zero. Angles near 0 and π keep their
 /// digits.
 double angle_between(const Vec3& a, const Vec3& b);
-/// The angles between a and b and between c and d: the same bits, in little more than the time for one.
+/// The angle between a and b, and the angle between c and d. Both have the bits of angle_between(). The call takes
+/// little longer than one call of angle_between().
 std::array<double, 2> angles_between(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace scanmill

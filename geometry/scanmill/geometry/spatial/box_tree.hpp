@@ -2,9 +2,9 @@
 #pragma once
 /// Finds the items whose bounding boxes meet a box, while items change and disappear.
 ///
-/// Every node has four children. Items keep their leaves: a changed box is refitted upwards, which stops at the first
-/// node that stays the same. A mesh that is edited keeps its triangles where they were, so the tree stays good until
-/// most items are gone; then build a new one.
+/// Every node has four children. Items keep their leaves. When a box changes, the boxes above it are refitted up to the
+/// first node that stays the same. A mesh that is edited keeps its triangles where they were, so the tree stays
+/// efficient until most items are gone; then build a new tree.
 
 #include <array>
 #include <span>
@@ -17,21 +17,21 @@ namespace scanmill {
 
 class BoxTree {
 public:
-    /// Empty boxes are items that are not there. Pre: fewer than 2^31 boxes, finite where not empty.
-    /// Cost: O(n log n); about 40 bytes per item.
+    /// An item with an empty box is absent. Pre: fewer than 2^31 boxes; boxes that are not empty are finite. Cost: O(n
+    /// log n); about 40 bytes per item.
     explicit BoxTree(std::span<const BoundingBox> boxes);
 
-    /// Items when it was built.
+    /// Number of items present at construction.
     std::size_t leaves() const { return items_.size(); }
-    /// Items that are there.
+    /// Number of items present now.
     std::size_t size() const { return size_; }
-    /// Replaces the item's box; an empty one removes the item. `stamp`: see for_each_meeting(); not below that of the
-    /// last change.
+    /// Replaces the item's box; an empty box removes the item. `stamp`: see for_each_meeting(); it must not be below
+    /// the stamp of the last change. Pre: the item was present at construction.
     void change(u32 item, const BoundingBox& box, u32 stamp = 0);
 
     /// Calls action(item) for every item whose box meets `box`, borders included. Boxes are compared as floats, rounded
-    /// outwards, so a few more may be reported. Subtrees without a change of at least this stamp are skipped; items in
-    /// the others are reported whatever their stamp. Safe from several threads between changes.
+    /// outwards, so a few more items may be reported. Subtrees without a change of at least `stamp` are skipped; all
+    /// items of other subtrees are reported, whatever their stamp. Safe from several threads between changes.
     template <class Action>
     void for_each_meeting(const BoundingBox& box, Action&& action, u32 stamp = 0) const {
         if (levels_.empty()) return;
@@ -85,10 +85,10 @@ private:
     static void set_child(Node& node, u32 child, const FloatBox& box);
     static FloatBox bounds_of(const Node& node);
 
-    /// From the nodes above the items to the root.
+    /// Levels from the nodes above the items up to the root.
     std::vector<Array<Node>> levels_;
-    Array<u32> items_;  ///< by leaf
-    Array<u32> leaves_;  ///< by item
+    Array<u32> items_;  ///< item of every leaf
+    Array<u32> leaves_;  ///< leaf of every item
     std::size_t size_ = 0;
     std::vector<bool> is_there_;
 };

@@ -9,9 +9,9 @@ namespace scanmill {
 
 namespace {
 
-constexpr int bits_per_axis = 21;  // three numbers make one of 63 bits
+constexpr int bits_per_axis = 21;  // three coordinates make a key of 63 bits
 constexpr double middle = 1 << (bits_per_axis - 1), most_cells_per_axis = middle - 4;
-// Larger than what rounding can do to a coordinate that is measured in cells.
+// Larger than the relative rounding error of a coordinate in units of cells.
 constexpr double slack = 1 + 0x1p-20;
 
 u64 key(u64 x, u64 y, u64 z) { return (((z << bits_per_axis) + y) << bits_per_axis) + x; }

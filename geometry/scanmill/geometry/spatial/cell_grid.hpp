@@ -10,21 +10,21 @@
 
 namespace scanmill {
 
-/// Numbers cells in the order in which they are entered; what a cell contains is the caller's, by that number.
+/// Numbers cells in the order in which they are entered. Callers store the contents of cells under these numbers.
 class CellGrid {
 public:
     /// Cell (i, j, k) contains the points with floor((p - origin) / edge) = (i, j, k). Pre: edge > 0; i, j and k of all
     /// points are between -2^20 + 1 and 2^20 - 1.
     CellGrid(const Vec3& origin, double edge);
-    /// For points in the box: two that are at most `distance` apart are in one cell or in cells that touch. Pre:
-    /// distance > 0.
+    /// A grid for points in the box: two points that are at most `distance` apart are in one cell or in cells that
+    /// touch. Pre: distance > 0.
     CellGrid(const BoundingBox& box, double distance);
 
-    /// The number of the point's cell, a new one if no earlier point was in the cell.
+    /// Returns the number of the point's cell. The number is new if no earlier point was in the cell.
     u32 enter(const Vec3& point);
 
-    /// Whether is_found(number) is true for the point's cell or an entered cell that touches it. Calls it for the
-    /// point's cell first, and for no more cells once it was true.
+    /// Whether is_found(number) is true for the point's cell or for an entered cell that touches it. Calls is_found for
+    /// the point's cell first, and stops when it returns true.
     template <class IsFound>
     bool any_near(const Vec3& point, IsFound&& is_found) const {
         const u64 own = key_of(point);
@@ -42,12 +42,12 @@ private:
     };
 
     u64 key_of(const Vec3& point) const;
-    /// The slot of the key, or the free one where it would be.
+    /// The slot of the key or, if it is absent, the free slot for it.
     std::size_t slot_of(u64 key) const;
 
     Vec3 origin_;
     double edge_;
-    std::array<u64, 27> neighbours_;  ///< differences of keys
+    std::array<u64, 27> neighbours_;  ///< differences between the keys of a cell and those that touch it
     std::vector<Slot> slots_;  ///< open addressing; the size is a power of two
     u32 cells_ = 0;
 };

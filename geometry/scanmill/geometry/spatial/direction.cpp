@@ -14,8 +14,8 @@ Vec3 direction_of(std::span<const double> numbers, std::string_view name) {
             .hint("give x, y, z");
     const Vec3 direction(numbers[0], numbers[1], numbers[2]);
     if (!direction.allFinite() || direction.isZero(0))
-        throw Error("{} is ({}, {}, {}); it must have a length", name, numbers[0], numbers[1], numbers[2])
-            .hint("give a direction, as 0, 0, 1");
+        throw Error("{} is ({}, {}, {}); it must be finite and not zero", name, numbers[0], numbers[1], numbers[2])
+            .hint("give a direction, for example 0, 0, 1");
     return direction.stableNormalized();
 }
 

@@ -9,12 +9,12 @@
 
 namespace scanmill {
 
-/// The unit vector of the x, y, z that a parameter contains; `name` is the parameter as messages call it. Throws Error
-/// for other than three numbers, for numbers that are not finite, and for three zeros.
+/// The unit vector with the x, y, z of a parameter. `name` is the parameter's name for messages. Throws Error unless
+/// there are three finite numbers that are not all zero.
 Vec3 direction_of(std::span<const double> numbers, std::string_view name);
 
-/// The same for the position with these x, y, z. Throws Error for other than three lengths, and for lengths that are
-/// not finite.
+/// The position with the x, y, z of a parameter. `name` is the parameter's name for messages. Throws Error unless there
+/// are three finite lengths.
 Vec3 position_of(std::span<const Length> lengths, std::string_view name);
 
 }  // namespace scanmill

@@ -13,8 +13,8 @@ template <class Element = u32>
 class Lists {
 public:
     Lists() = default;
-    /// `each` is called twice and calls its argument with the number of a list, below `count`, and an element, for all
-    /// elements in the same order both times. Elements of one list keep that order. Cost: linear.
+    /// `each(add)` calls add(list, element) for every element; `list` is below `count`. `each` is called twice and must
+    /// report the same elements in the same order. Elements of one list keep that order. Cost: linear.
     template <class Each>
     Lists(std::size_t count, const Each& each) : begin_(count + 1, 0) {
         each([&](std::size_t list, const Element&) { ++begin_[list + 1]; });

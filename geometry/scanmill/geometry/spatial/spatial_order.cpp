@@ -23,7 +23,7 @@ u64 spread(u64 bits) {
     return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// Stable, by 16 bits from `shift` on.
+/// Stable sort by the 16 bits from `shift` on.
 void sort_by_digit(const Array<Entry>& from, Array<Entry>& to, int shift) {
     std::vector<std::size_t> next(std::size_t(1) << 16, 0);
     for (const Entry& entry : from) ++next[entry.code >> shift & 0xffff];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// An order in which consecutive points are near each other: searches in it find the memory of the last search in the
-/// cache, and its result is a good hint.
+/// An order in which consecutive points are near each other. Searches in this order find the memory of the previous
+/// search in the cache, and its result is a good hint.
 
 #include <span>
 
@@ -10,8 +10,9 @@
 
 namespace scanmill {
 
-/// The rows of the positions along the Morton curve through their bounding box, cut into 2^21 steps per axis; equal
-/// ones by row. Pre: finite positions, fewer than 2^32. Cost: O(n) time, 32 bytes per point for the time of the call.
+/// The rows of the positions along the Morton curve through their bounding box, cut into 2^21 steps per axis. Positions
+/// with equal codes are sorted by row. Pre: finite positions, fewer than 2^32. Cost: O(n) time, 32 bytes per point
+/// during the call.
 Array<u32> spatial_order(std::span<const Vec3> positions);
 
 }  // namespace scanmill

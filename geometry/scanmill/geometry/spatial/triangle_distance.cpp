@@ -8,7 +8,8 @@ namespace scanmill {
 
 namespace {
 
-/// The square of the height over the longest edge below which the weights of Ericson's method lose too many digits.
+/// Limit of the squared ratio of height to longest edge. Below it, the weights of Ericson's method lose too many
+/// digits.
 constexpr double thin = 1.0 / 16;
 
 /// Ericson's walk through the Voronoi regions of corners, edges and face. Pre: not thin.
@@ -36,9 +37,9 @@ Vec3 nearest_by_region(const Vec3& point, const Vec3& a, const Vec3& b, const Ve
     return a + vb * scale * ab + vc * scale * ac;
 }
 
-/// The projection of `point` to the plane of the triangle, clamped to the triangle. Coordinates along the longest edge
-/// and its height, which are perpendicular, are as accurate as the corners, however thin the triangle is.
-/// Pre: p q is the longest edge.
+/// The projection of `point` to the plane of the triangle, clamped to the triangle. Its coordinates are along the
+/// longest edge and along the height, which are perpendicular. They are therefore as accurate as the corners, however
+/// thin the triangle is. Pre: p q is the longest edge.
 Vec3 projection(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 edge = q - p, side = r - p;
     const double squared = edge.squaredNorm();

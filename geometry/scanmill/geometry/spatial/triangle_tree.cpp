@@ -14,7 +14,8 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t largest_leaf = 4;
-/// As a share of the scaled extent: far above the rounding of a distance in doubles, far below that of a float.
+/// Widening of boxes, as a share of the scaled extent. It is far above the rounding error of a distance in doubles and
+/// far below that of a float.
 constexpr double widening = 0x1p-40;
 
 /// A float below `value`, also if `value` is a float.
@@ -35,7 +36,7 @@ struct Centroid {
     u32 row;
 };
 
-/// Moves the `middle - first` smallest along the longest axis to the front; equal ones by row.
+/// Moves the `middle - first` centroids that are smallest along the longest axis to the front; equal ones by row.
 void split(Centroid* first, Centroid* middle, Centroid* last) {
     if (middle == first || middle == last) return;
     Float3 low = first->at, high = first->at;
@@ -154,11 +155,11 @@ Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
 Float4 all(float value) { return Float4{value, value, value, value}; }
 Float4 load(const float* values) { return Float4{values[0], values[1], values[2], values[3]}; }
 
-/// The interval of floats that contains a point.
+/// For each coordinate of a point, an interval of floats that contains it, four times for four boxes.
 struct FloatPoint {
     explicit FloatPoint(const Vec3& point) {
         for (int axis = 0; axis < 3; ++axis) {
-            // Moved nearer, a point far outside is still outside, and its square fits in a float.
+            // A far point is moved nearer: it remains outside of all boxes, and its squared distance fits in a float.
             const double moved = std::clamp(point[axis], -1e18, 1e18);
             low[axis] = all(rounded_down(moved));
             high[axis] = all(rounded_up(moved));
@@ -178,7 +179,8 @@ struct FloatPoint {
     Float4 low[3], high[3];
 };
 
-/// Upper bound of the bounds of boxes that contain a triangle at `squared`: adds more than all roundings together.
+/// The largest bound that squared_distances() can give for a box that contains a triangle at distance² `squared`. The
+/// added terms exceed all roundings together.
 float reach(double squared, double scale) {
     return static_cast<float>(std::min(squared * (scale * scale) * (1 + 0x1p-18), 1e38)) + 1e-36f;
 }
@@ -210,7 +212,7 @@ void TriangleTree::search(const Vec3& point, float& limit, const Offer& offer) c
             continue;
         }
         const Float4 bounds = query.squared_distances(nodes_[next.node].bounds);
-        // Kept in descending order, so that the nearest is popped first.
+        // The new entries are kept in descending order, so that the nearest box is popped first.
         const std::size_t bottom = waiting;
         for (u32 i = 0; i < arity; ++i) {
             if (!(bounds[i] <= limit)) continue;
@@ -280,8 +282,9 @@ void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
 
 namespace {
 
-/// The convex hull of one to three points, for tests against boxes with separating axes: those of the boxes, and the
-/// normal of a triangle or the three perpendiculars of a segment that are perpendicular to an axis, too.
+/// The convex hull of one to three points, for tests against boxes with separating axes. The axes are the coordinate
+/// axes and, for a triangle, its normal. For a segment, they are also its three cross products with the coordinate
+/// axes.
 class Hull {
 public:
     Hull(std::span<const Vec3> points, double distance) {
@@ -335,7 +338,8 @@ bool TriangleTree::any_near(std::span<const Vec3> hull, double distance,
         points[i] = scaled(hull[i]);
         furthest = std::max(furthest, points[i].cwiseAbs().maxCoeff());
     }
-    // The added width exceeds the rounding of the tests, whose numbers are at most about the furthest coordinate.
+    // The added width exceeds the rounding errors of the tests, whose numbers are not much larger than the furthest
+    // coordinate.
     const Hull query({points.data(), hull.size()}, distance * scale_ + (1 + furthest) * widening);
     std::array<u32, (arity - 1) * deepest + 1> stack;
     std::size_t waiting = 0;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Finds the triangle nearest to a point and the triangles in a box: a tree of bounding boxes over triangles.
+/// Finds the triangle nearest to a point and the triangles in a box, with a tree of bounding boxes over triangles.
 ///
-/// Every node has four children, each with a quarter of its triangles (two splits at the median of the longest axis),
-/// so the tree is complete and needs no pointers. Boxes are floats, rounded outwards and widened by more than the
-/// rounding of a distance in doubles; distances to triangles are doubles. Results therefore equal those of a search
-/// over all triangles, bit for bit.
+/// Every node has four children, each with a quarter of its triangles (two splits at the median of the longest axis).
+/// So the tree is complete and needs no pointers. Boxes are floats, rounded outwards and widened by more than the
+/// rounding error of a distance in doubles. Distances to triangles are doubles. Results therefore equal those of a
+/// search over all triangles, bit for bit.
 ///
-/// Any set of triangles is allowed; degenerate ones are segments or points. tree_of_points() treats every point as a
-/// triangle with three equal corners.
+/// Any set of triangles is allowed; degenerate triangles are segments or points. tree_of_points() treats every point as
+/// a triangle with three equal corners.
 
 #include <array>
 #include <functional>
@@ -21,9 +21,9 @@ namespace scanmill {
 
 struct NearestTriangle {
     static constexpr u32 none = ~u32(0);
-    /// Row of the triangle; ties: the smallest.
+    /// Row of the triangle; of equally near triangles, the smallest row.
     u32 triangle = none;
-    /// Its index in the tree's own order; the `hint` for a search from a nearby point.
+    /// Index of the triangle in the tree's own order. It can be the `hint` of a search from a nearby point.
     u32 slot = none;
     double squared_distance = std::numeric_limits<double>::infinity();
 };
@@ -36,13 +36,15 @@ public:
 
     std::size_t size() const { return rows_.size(); }
 
-    /// The triangle whose nearest_on_triangle() is nearest to `point`; ties: the smallest row. The result does not
-    /// depend on the hint; a hint whose triangle is near makes it faster. Pre: a finite point. Safe from several
-    /// threads. Cost: O(log n) for points near the surface; far away from a round surface many triangles compete.
+    /// The triangle whose nearest_on_triangle() is nearest to `point`; ties: the smallest row. `hint` is the slot of
+    /// any triangle. It does not change the result, but a hint near the point makes the search faster. Pre: a finite
+    /// point. Safe from several threads. Cost: O(log n) for points near the surface; far away from a round surface many
+    /// triangles compete.
     NearestTriangle nearest(const Vec3& point, u32 hint = NearestTriangle::none) const;
 
-    /// Whether nearest(point).squared_distance <= `squared`. Faster, because the search ends at the first such
-    /// triangle, and does not look beyond that distance. `hint` is as above; it becomes the slot of that triangle.
+    /// Whether nearest(point).squared_distance <= `squared`. Faster than nearest(): the search ends at the first such
+    /// triangle and does not look beyond that distance. `hint` is used as in nearest() and receives the slot of that
+    /// triangle.
     bool is_within(const Vec3& point, double squared, u32& hint) const;
 
     /// The point of triangle `slot` (NearestTriangle::slot) nearest to `point`.
@@ -59,16 +61,18 @@ public:
     /// Appends the rows of all triangles whose bounding boxes meet `box` (borders included), in the tree's order.
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
 
-    /// Calls accept(slot) for triangles whose bounding boxes come within `distance` of the convex hull of one to three
-    /// points, and for a few others, until it returns true; then returns true. In no particular order. Safe from
-    /// several threads. Pre: finite points, distance ≥ 0. Cost: O(log n) and the triangles near the hull.
+    /// Calls accept(slot) for all triangles whose bounding boxes come within `distance` of the convex hull of one to
+    /// three points, and for a few more, in no particular order. Stops when `accept` returns true; returns whether it
+    /// did. Safe from several threads. Pre: finite points, distance ≥ 0. Cost: O(log n) and the triangles near the
+    /// hull.
     bool any_near(std::span<const Vec3> hull, double distance, const std::function<bool(u32 slot)>& accept) const;
 
 private:
     static constexpr std::size_t arity = 4;
     static constexpr unsigned deepest = 16;  ///< 4^16 leaves hold any u32
     struct Node {
-        /// Boxes of the children: low.x, low.y, low.z, high.x, high.y, high.z. Empty: low infinite, high -infinite.
+        /// Boxes of the children: low.x, low.y, low.z, high.x, high.y, high.z. An empty box has low = infinity, high =
+        /// -infinity.
         alignas(16) float bounds[6][arity];
     };
 
@@ -78,17 +82,17 @@ private:
     void sort_triangles(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads);
     void bound_nodes(unsigned threads);
     void bound_node(std::size_t node);
-    /// Calls offer(slot) for triangles whose boxes are at most `limit` from the point, nearer boxes first, until it
-    /// returns true. `limit` is a squared distance in scaled coordinates and may be lowered by `offer`.
+    /// Calls offer(slot) for triangles whose boxes are at most `limit` from the point, nearer boxes first. Stops when
+    /// `offer` returns true. `limit` is a squared distance in scaled coordinates; `offer` may lower it.
     template <class Offer>
     void search(const Vec3& point, float& limit, const Offer& offer) const;
     Vec3 scaled(const Vec3& point) const { return (point - centre_) * scale_; }
 
     Vec3 centre_;
-    /// A power of two: scaled coordinates lie within [-1, 1].
+    /// A power of two that brings coordinates into [-1, 1].
     double scale_ = 1;
     unsigned depth_ = 0;
-    /// Level by level: the children of node i are 4 i + 1 … 4 i + 4; numbers from nodes_.size() on are leaves.
+    /// Nodes, level by level. The children of node i are 4 i + 1 … 4 i + 4; numbers from nodes_.size() on are leaves.
     Array<Node> nodes_;
     Array<std::array<Vec3, 3>> corners_;
     Array<u32> rows_;

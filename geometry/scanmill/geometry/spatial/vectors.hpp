@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Small functions of positions: their order, areas and volumes, directions across another one.
+/// Small functions of positions: order, areas and volumes, and perpendicular directions.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -17,7 +17,8 @@ inline bool is_lower(const Vec3& a, const Vec3& b) {
     return a.y() != b.y() ? a.y() < b.y() : a.z() < b.z();
 }
 
-/// Perpendicular to the triangle, on the side from which it is counter-clockwise; twice its area long.
+/// A vector perpendicular to the triangle, on the side from which the triangle is counter-clockwise. Its length is
+/// twice the area of the triangle.
 inline Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 inline Vec3 area_vector(std::span<const Vec3> positions, const Triangle& t) {
     return area_vector(positions[t[0]], positions[t[1]], positions[t[2]]);

@@ -6,7 +6,7 @@
 
 namespace scanmill {
 
-/// Turns about an edge of a cell, from facet to facet.
+/// Walks around an edge from cell to cell, through the facets at the edge.
 class EdgeWalk {
 public:
     /// Starts at `cell` and first crosses the facet opposite to its corner `across`; the edge joins the two corners
@@ -27,7 +27,7 @@ public:
         cell_ = next();
         const Tetrahedron& corners = tets_.cells[cell_];
         across_ = corners[0] == kept_ ? 0 : corners[1] == kept_ ? 1 : corners[2] == kept_ ? 2 : 3;
-        // The exclusive or of three corners and of all four differ by the fourth corner.
+        // The exclusive or of all four corners and of three of them is the fourth corner.
         kept_ = sum(cell_) ^ others_ ^ kept_;
     }
 
@@ -40,7 +40,8 @@ private:
     const TetMesh& tets_;
     u32 cell_;
     int across_;
-    /// The vertex of the next facet that is not on the edge; the exclusive or of the edge's two vertices.
+    /// `kept_`: the vertex of the next facet that is not on the edge. `others_`: exclusive or of the edge's two
+    /// vertices.
     u32 kept_, others_;
 };
 

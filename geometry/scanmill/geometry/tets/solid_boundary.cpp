@@ -28,15 +28,16 @@ bool is_one_cycle(std::span<const LinkEdge> link) {
     std::size_t walked = 1;
     for (u32 at = link[0].to; at != link[0].from; ++walked) {
         const LinkEdge* edge = starting_at(link, at);
-        // If several edges start at one vertex, the walk always takes the same one; it misses the others or never ends.
+        // If several edges start at one vertex, the walk always takes the same edge. It then misses the others or never
+        // ends.
         if (edge == nullptr || walked > link.size()) return false;
         at = edge->to;
     }
     return walked == link.size();
 }
 
-/// The number of edges with more than two triangles between `centre` and a larger vertex: link vertices at which
-/// several edges start.
+/// Counts the edges from `centre` to larger vertices that have more than two triangles. Several link edges start at
+/// such a vertex.
 std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
     std::ranges::sort(link, {}, &LinkEdge::from);
     std::size_t count = 0;
@@ -60,7 +61,8 @@ Array<u32> hidden_vertices(const TetMesh& tets) {
 
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads) {
     const std::size_t cells = tets.cells.size();
-    // Per cell a bit for each corner whose facet is on the boundary: neighbours' labels are looked up once.
+    // For each cell, one bit for each corner whose facet is on the boundary. So the labels of neighbours are read only
+    // once.
     Array<u8> open(cells);
     Array<std::size_t> starts((cells + chunk - 1) / chunk);
     for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
@@ -71,7 +73,7 @@ Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labe
                 for (int corner = 0; corner < 4; ++corner) {
                     const u32 across = tets.neighbours[c][corner];
                     const bool at_hull = across == TetMesh::outside_hull;
-                    // Without a branch: which facets are on the boundary cannot be predicted.
+                    // There is no branch here, because it cannot be predicted which facets are on the boundary.
                     const unsigned is_open = unsigned(at_hull) | unsigned(labels[at_hull ? 0 : across] != solid);
                     mask |= is_open << corner;
                     count += is_open;
@@ -117,7 +119,7 @@ BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t ve
     });
     u32 start = 0;
     for (u32& entry : ends_) start += std::exchange(entry, start);
-    // Afterwards every start has become the start of the next vertex.
+    // Every claim() increases a start, so at the end each start has become the start of the next vertex.
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const auto& [a, b, c] = triangles[t];

@@ -10,21 +10,21 @@
 
 namespace scanmill {
 
-/// The vertices in no cell, ascending: points hidden by the weights of others. Cost: linear.
+/// The vertices in no cell, ascending. These points are hidden by the weights of other points. Cost: linear.
 Array<u32> hidden_vertices(const TetMesh& tets);
 
-/// The facets between cells labelled 1 and other cells or the outside, oriented outwards, in vertices of `tets`;
-/// ascending by cell, then by corner.
+/// The facets between cells labelled 1 and other cells or the outside, oriented outwards, as vertices of `tets`; sorted
+/// by cell, then by corner.
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
-/// These triangles as a mesh with only the vertices that they use, in vertex order, with all columns.
+/// A mesh of the given triangles with only the vertices that they use, in vertex order, with all columns.
 TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles);
 
-/// A triangle seen from one of its corners: the opposite edge, in the triangle's direction.
+/// A triangle seen from one of its corners: the edge opposite to this corner, in the triangle's direction.
 struct LinkEdge {
     u32 from, to;
 };
 
-/// The triangles around every vertex, as the edges opposite to it; in unspecified order.
+/// For each vertex, the edges opposite to it in its triangles, in unspecified order.
 /// Cost: linear, 24 bytes per triangle.
 class BoundaryLinks {
 public:
@@ -48,10 +48,10 @@ struct BoundaryDefects {
     std::size_t edges = 0;
 };
 
-/// Pre: the triangles bound a set of cells: every directed edge occurs as often as its reverse.
-/// Cost: linear, 24 bytes per triangle for the links.
+/// Finds the places where the boundary is not a 2-manifold. Pre: the triangles bound a set of cells, so every directed
+/// edge occurs as often as its reverse. Cost: linear, 24 bytes per triangle for the links.
 BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads);
-/// The same; sorts the longer links by `from`.
+/// The same with given links; sorts the longer links by `from`.
 BoundaryDefects boundary_defects(BoundaryLinks& links, unsigned threads);
 
 /// Unites the vertices of every triangle; returns the number of sets that contain a triangle.

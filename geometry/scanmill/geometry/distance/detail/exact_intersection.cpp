@@ -15,10 +15,10 @@ Kernel::Point_3 point(const Vec3* p) { return {p->x(), p->y(), p->z()}; }
 
 Kernel::Triangle_3 triangle(const Corners& t) { return {point(t[0]), point(t[1]), point(t[2])}; }
 
-/// Opposite the first corner.
+/// The edge opposite the first corner.
 Kernel::Segment_3 edge(const Corners& t) { return {point(t[1]), point(t[2])}; }
 
-/// The side of the line from `a` to `b` that `p` is on, moved by ε along x and by ε² along y; 0 only if a = b.
+/// The side of the line from `a` to `b` on which `p` is after a move by ε along x and ε² along y. 0 only if a = b.
 int side(const Kernel::Point_2& a, const Kernel::Point_2& b, const Kernel::Point_2& p) {
     const auto orientation = static_cast<int>(CGAL::orientation(a, b, p));
     if (orientation != 0) return orientation;
@@ -36,7 +36,7 @@ bool triangles_intersect(const Corners& one, const Corners& other, std::size_t c
     switch (common) {
         case 0: return CGAL::do_intersect(triangle(one), triangle(other));
         case 1:
-            // Any other common part extends to the edge opposite the common corner, in one of the triangles.
+            // Any other common part extends, in one of the triangles, to the edge opposite the common corner.
             return CGAL::do_intersect(triangle(one), edge(other)) || CGAL::do_intersect(triangle(other), edge(one));
         case 2: {
             // Triangles with a common edge overlap if one is folded flat onto the other.
@@ -48,7 +48,7 @@ bool triangles_intersect(const Corners& one, const Corners& other, std::size_t c
 }
 
 int crossing(const Vec3& p, int axis, bool is_upward, const Corners& triangle) {
-    // Seen against the axis: counter-clockwise triangles face its positive direction.
+    // Projects seen from the positive end of the axis: counter-clockwise triangles face the positive direction.
     const auto seen = [&](const Vec3& v) { return Kernel::Point_2(v[(axis + 1) % 3], v[(axis + 2) % 3]); };
     const Kernel::Point_2 a = seen(*triangle[0]), b = seen(*triangle[1]), c = seen(*triangle[2]), q = seen(p);
     const int facing = side(a, b, q);

@@ -10,12 +10,13 @@ namespace scanmill::triangle_parts {
 
 namespace {
 
-/// A part that crosses an edge by less is not cut there: a share of its distance, over which that distance hardly
-/// grows, and of its size, so that cuts do not leave slivers.
+/// A part is not cut at an edge that it crosses by less than the larger of two limits. The first is a share of the
+/// part's distance, because the distance hardly grows over it. The second is a share of the part's size, so that cuts
+/// leave no slivers.
 constexpr double harmless_of_distance = 0.05;
 constexpr double harmless_of_size = 1e-3;
 
-/// The distance to one triangle is convex: nowhere on the part is it larger than at one of the corners.
+/// The distance to one triangle is convex. So on no point of the part is it larger than at one of the corners.
 void try_triangle(TrianglePart& part, u32 slot) {
     if (slot == NearestTriangle::none) return;
     const double least = part.upper * part.upper;
@@ -53,7 +54,7 @@ double overhang(const PlaneDistances& distances) {
     return std::min(std::ranges::max(distances), -std::ranges::min(distances));
 }
 
-/// Distances to the plane, through an edge of the triangle below, that the part crosses farthest.
+/// Of the planes through edges of the triangle below, the plane that the part crosses farthest: distances to it.
 PlaneDistances farthest_crossed(const TrianglePart& part) {
     const std::array<Vec3, 3> below = part.other->corners(part.below);
     const Vec3 normal = (below[1] - below[0]).cross(below[2] - below[0]);
@@ -81,9 +82,9 @@ TrianglePart with_corners(const TrianglePart& part, const PartCorner& a, const P
     return result;
 }
 
-/// Along the plane with these distances. Pre: corners on both sides of it.
+/// Cuts along the plane to which the corners have these distances. Pre: corners on both sides of it.
 Cut cut_along(const TrianglePart& part, const PlaneDistances& distances) {
-    // The corner that is alone on its side; one on the plane belongs to the larger group.
+    // Finds the corner that is alone on its side. A corner on the plane belongs to the side of the other two.
     std::size_t alone = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         const double next = distances[(i + 1) % 3], last = distances[(i + 2) % 3];
