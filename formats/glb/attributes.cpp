@@ -86,7 +86,7 @@ constexpr int component_type() {
     return TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// Every number of the column in the type that glTF has for it.
+/// Writes every number of the column with the matching type of glTF.
 template <class T>
 Attribute number_attribute(const Column& column) {
     using Written = std::conditional_t<component_type<T>() == TINYGLTF_COMPONENT_TYPE_FLOAT, float, T>;
@@ -104,7 +104,7 @@ struct Fitness {
     std::size_t not_finite = 0, too_large = 0, rounded = 0;
 };
 
-/// The numbers that float cannot hold. Integers of 32 and 64 bits count as rounded when they are beyond 2^24.
+/// Counts the numbers that float cannot hold. Integers of 32 and 64 bits count as rounded if they are beyond 2^24.
 template <class T>
 Fitness fitness_of(std::span<const T> numbers) {
     Fitness found;
@@ -125,27 +125,27 @@ Fitness fitness_of(std::span<const T> numbers) {
     return found;
 }
 
-/// The reason why glTF cannot hold the column; empty when it can. Warns when it is rounded.
+/// The reason why glTF cannot hold the column; empty if it can. Warns if doubles are rounded.
 std::string why_left_out(const Column& column, const WriteOptions& options) {
     if (column.is_list()) return "it holds lists";
     if (column.components() > most_components)
-        return fmt::format("it has {} numbers per row, and glTF at most {}", column.components(), most_components);
+        return fmt::format("it has {} numbers per row; glTF allows at most {}", column.components(), most_components);
     const Fitness found = visit_scalar(column.type(), [&]<class T>(T) { return fitness_of(column.values<T>()); });
     if (found.not_finite > 0)
         return fmt::format("{} NaN or infinite, which glTF does not allow",
                            count_text(found.not_finite, "of its numbers is", "of its numbers are"));
     if (found.too_large > 0)
-        return fmt::format("{} beyond what its single precision can hold",
+        return fmt::format("{} beyond the range of its single precision",
                            count_text(found.too_large, "of its numbers is", "of its numbers are"));
     if (found.rounded > 0 && column.type() != ScalarType::float64)
-        return fmt::format("{} a whole number beyond 2^24, which its single precision would change",
+        return fmt::format("{} beyond 2^24, where its single precision would change whole numbers",
                            count_text(found.rounded, "of its numbers is", "of its numbers are"));
     if (found.rounded > 0)
         warn(options.on_warning, "GLB rounded the column '{}' to single precision; PLY keeps it", column.name());
     return "";
 }
 
-/// "Ring no" → "_RING NO"; the letters of ASCII only.
+/// "Ring no" → "_RING NO". Only ASCII letters are changed.
 std::string upper_case(std::string_view name) {
     std::string upper = "_";
     for (const char c : name) upper += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -183,7 +183,7 @@ std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOpti
             attribute.name = names.add(column.name(), identifier(expected), expected);
             if (lost > 0)
                 warn(options.on_warning, "GLB contains the column 'normal' as '{}' and not as normals: {} no direction",
-                     attribute.name, count_text(lost, "of them has", "of them have"));
+                     attribute.name, count_text(lost, "of its rows has", "of its rows have"));
             attributes.push_back(std::move(attribute));
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Columns as vertex attributes of glTF: the type that each one gets, and which columns cannot be written.
+/// Columns as vertex attributes of glTF. Decides which columns can be written, and with which type.
 
 #include <functional>
 #include <string>
@@ -13,14 +13,14 @@
 namespace scanmill::glb {
 
 struct Attribute {
-    std::string name;  ///< "NORMAL", "_RING"
+    std::string name;  ///< for example "NORMAL" or "_RING"
     int component_type;  ///< tinygltf's constant
     u32 components;
     bool is_normalised = false;
-    /// Writes the rows to `rows`, stride() bytes apart; the bytes between them are not changed.
+    /// Writes the rows to `rows`, stride() bytes apart; does not change the bytes between them.
     std::function<void(unsigned char* rows)> fill;
 
-    /// glTF requires rows to be aligned to four bytes.
+    /// Bytes from one row to the next: glTF requires rows to be aligned to four bytes.
     std::size_t stride() const;
 };
 

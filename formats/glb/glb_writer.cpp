@@ -17,7 +17,7 @@ namespace scanmill::glb {
 
 namespace {
 
-/// Passes the output of tinygltf on without a copy.
+/// A stream that passes the output of tinygltf to an OutputBuffer without a copy.
 class Passing : public std::streambuf {
 public:
     explicit Passing(OutputBuffer& out) : out_(out) {}
@@ -38,7 +38,7 @@ private:
 /// A glTF scene of one node with one mesh of one primitive, and its binary data.
 class GlbModel {
 public:
-    /// `kind` names the node when the frame has no name.
+    /// `kind` is the name of the node if the frame has no name.
     GlbModel(const Frame& frame, std::string_view kind);
 
     tinygltf::Primitive& primitive() { return model_.meshes[0].primitives[0]; }
@@ -46,13 +46,13 @@ public:
     tinygltf::Material& material() { return model_.materials[0]; }
 
     void reserve(std::size_t size) { bytes().reserve(size); }
-    /// Adds `count` rows of `stride` bytes, all zero. The pointer is invalid after the next call unless memory was
-    /// reserved. The constants are tinygltf's.
+    /// Adds `count` rows of `stride` bytes, all zero, and returns their address. The next call makes the address
+    /// invalid unless memory was reserved. The other arguments are tinygltf's constants.
     unsigned char* add_accessor(std::size_t count, std::size_t stride, int type, int component_type, int target);
     tinygltf::Accessor& last_accessor() { return model_.accessors.back(); }
     int last_index() const { return static_cast<int>(model_.accessors.size()) - 1; }
 
-    /// Throws Error, and passes on exceptions of `out`.
+    /// Throws Error if tinygltf fails; passes on exceptions of `out`.
     void write(OutputBuffer& out) const;
 
 private:
@@ -105,7 +105,7 @@ void GlbModel::write(OutputBuffer& out) const {
     stream.exceptions(std::ios::badbit);  // passes on exceptions of the sink, such as a full disk
     constexpr bool pretty = false, binary = true;
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, pretty, binary) || !stream)
-        throw Error("tinygltf could not write it").hint("write PLY");
+        throw Error("tinygltf could not write the file").hint("write PLY");
 }
 
 void GlbModel::add_extras(const Frame& frame) {
@@ -115,7 +115,8 @@ void GlbModel::add_extras(const Frame& frame) {
     if (!extras.empty()) node().extras = tinygltf::Value(extras);
 }
 
-/// The default material is a metal, which is black without an environment to reflect.
+/// Adds a material that is not metallic. glTF's default material is a metal, which is black if there is no environment
+/// to reflect.
 void GlbModel::add_material() {
     model_.materials.emplace_back();
     material().name = "scan";
@@ -123,15 +124,15 @@ void GlbModel::add_material() {
     material().doubleSided = true;
 }
 
-/// Throws Error when the binary data do not fit: the format has 32-bit sizes.
+/// Throws Error if the binary data do not fit, because the format has 32-bit sizes.
 void require_fits(u64 bytes) {
     constexpr u64 most = std::numeric_limits<u32>::max(), reserved_for_json = u64(1) << 20;
     if (bytes > most - reserved_for_json)
-        throw Error("it needs {} bytes; a GLB file holds at most {}", bytes, most)
+        throw Error("the file needs {} bytes; GLB allows at most {}", bytes, most)
             .hint("write PLY or VTP, or reduce the scan first");
 }
 
-/// The origin of the vertices: near them when they are far from zero, else zero.
+/// The origin of the vertices: a point near them if they are far from zero, else zero.
 Vec3 local_origin(const Frame& frame, std::span<const Vec3> positions) {
     BoundingBox box = bounding_box(positions);
     box.low += frame.origin;
@@ -149,7 +150,7 @@ Vec3 in_metres(const Frame& frame, const Vec3& v) {
     return v.unaryExpr([&](double length) { return in_unit(length, unit, LengthUnit::metre); });
 }
 
-/// The position of a vertex in the file, before it is rounded, without the node's translation.
+/// The position of a vertex in the file, before rounding, and without the node's translation.
 Vec3 local_position(const Frame& frame, const Vec3& shift, const Vec3& position) {
     return y_up(in_metres(frame, shift + position));
 }

@@ -70,7 +70,7 @@ private:
         return true;
     }
 
-    /// True after the DATA line.
+    /// Reads a line; returns true for the DATA line.
     bool read_line() {
         if (words_.empty()) return false;
         const std::string_view key = words_.front();
@@ -110,7 +110,7 @@ private:
                 throw Error("line {}: two fields are called {}", line_, quote(name));
     }
 
-    /// The position of the sensor, and its rotation as a quaternion w x y z. Old files have no such line.
+    /// Reads the position of the sensor and its rotation, a quaternion w x y z. Old files have no such line.
     void read_viewpoint() {
         constexpr std::array<double, 7> identity{0, 0, 0, 1, 0, 0, 0};
         if (words_.size() != identity.size() + 1)
@@ -165,15 +165,15 @@ private:
             header_.row_bytes += sizes_[field] * counts_[field];
             header_.row_numbers += counts_[field];
         }
-        // Old files have no WIDTH and HEIGHT.
+        // Old files have POINTS instead of WIDTH and HEIGHT.
         if (header_.width == 0 && promised_) header_.width = *promised_;
         require_countable(header_.width, "points");
         require_countable(header_.height, "points");
         header_.points = header_.width * header_.height;
         require_countable(header_.points, "points");
         if (promised_ && *promised_ != header_.points)
-            throw Error("its header promises {}, and {} × {} of them", count_text(*promised_, "point", "points"),
-                        header_.width, header_.height);
+            throw Error("its header promises {}, but WIDTH × HEIGHT is {} × {}",
+                        count_text(*promised_, "point", "points"), header_.width, header_.height);
         if (padded_ && header_.encoding == PcdHeader::Encoding::compressed)
             throw Error("its compressed points have padding (the field _), which PCL does not read correctly")
                 .hint("save it as binary or ascii");
@@ -198,14 +198,14 @@ private:
                 header_.bytes_behind = without_padding(left - promised);
                 break;
             case PcdHeader::Encoding::compressed: {
-                constexpr u64 best_ratio = 264;  // LZF expands three bytes to at most 264; one byte never gives more
+                constexpr u64 best_ratio = 264;  // LZF expands three bytes to at most 264
                 std::array<std::uint32_t, 2> sizes{};
                 require(left >= sizeof sizes);
                 std::memcpy(sizes.data(), bytes_.data() + header_.body, sizeof sizes);
                 require(left - sizeof sizes >= sizes[0]);
                 header_.bytes_behind = without_padding(left - sizeof sizes - sizes[0]);
                 if (sizes[1] != promised || promised > best_ratio * sizes[0])
-                    throw Error("its header promises {} of {}; the compressed block declares {} in {}",
+                    throw Error("its header promises {} of {}; the compressed block declares {} in {} compressed bytes",
                                 count_text(header_.points, "point", "points"),
                                 count_text(header_.row_bytes, "byte", "bytes"), count_text(sizes[1], "byte", "bytes"),
                                 sizes[0])
@@ -214,7 +214,8 @@ private:
         }
     }
 
-    /// PCL's own writer fills the last page of the file with zeros, which are ignored.
+    /// The number of bytes after the points, without zeros: PCL's own writer fills the last page of the file with
+    /// zeros.
     u64 without_padding(u64 behind) const {
         const bool is_padding = bytes_.substr(bytes_.size() - behind).find_first_not_of('\0') == std::string_view::npos;
         return is_padding ? 0 : behind;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The header of a PCD file, checked before PCL, which trusts it, allocates memory for the points it declares; and the
-/// types of its fields.
+/// The header of a PCD file, and the types of its fields. PCL trusts the header, so it is checked before PCL allocates
+/// memory for the points that it declares.
 
 #include <pcl/PCLPointField.h>
 
@@ -20,15 +20,15 @@ struct PcdHeader {
     Encoding encoding = Encoding::ascii;
     u64 width = 0, height = 1;
     u64 points = 0;       ///< width × height
-    u64 row_bytes = 0;    ///< of one point
-    u64 row_numbers = 0;  ///< in one point
-    std::size_t body = 0;  ///< where the points begin
-    std::size_t lines = 0;  ///< of the header
+    u64 row_bytes = 0;    ///< bytes of one point
+    u64 row_numbers = 0;  ///< numbers of one point
+    std::size_t body = 0;  ///< byte where the points begin
+    std::size_t lines = 0;  ///< lines of the header
     std::vector<std::string> comments;
     std::string viewpoint;  ///< as written; empty when absent
-    bool has_viewpoint = false;  ///< not at the origin, or rotated
-    Vec3 sensor = Vec3::Zero();  ///< its position
-    u64 bytes_behind = 0;  ///< after the last point, unless all are zero; 0 for ascii
+    bool has_viewpoint = false;  ///< whether the VIEWPOINT is not at the origin, or is rotated
+    Vec3 sensor = Vec3::Zero();  ///< position of the sensor
+    u64 bytes_behind = 0;  ///< bytes after the last point; 0 if all are zero, and for ascii
 };
 
 /// Throws Error when the header is malformed, contradicts itself, or declares more than the bytes of the file can hold.
@@ -36,7 +36,7 @@ PcdHeader checked_header(std::string_view bytes);
 
 std::string_view name_of(PcdHeader::Encoding encoding);
 
-/// Empty for a datatype that PCL does not define.
+/// The type with this PCL number; empty for a number that PCL does not define.
 std::optional<ScalarType> scalar_type(std::uint8_t datatype);
 std::uint8_t datatype(ScalarType type);
 

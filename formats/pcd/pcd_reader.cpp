@@ -32,7 +32,7 @@ ScalarType require_type(const PCLPointField& field) {
     return *type;
 }
 
-/// The bytes of these fields, row by row.
+/// The numbers of these fields, row by row.
 template <class T>
 Buffer<T> gathered(const PCLPointCloud2& cloud, std::span<const PCLPointField* const> fields, std::size_t count) {
     Array<T> values(rows_of(cloud) * fields.size() * count);
@@ -52,7 +52,7 @@ Column column_of(const PCLPointCloud2& cloud, std::span<const PCLPointField* con
     });
 }
 
-/// Four bytes per point, packed into a number with blue lowest.
+/// The column `colour` from a field of four bytes per point; blue is the lowest byte.
 Column colours_of(const PCLPointCloud2& cloud, const PCLPointField& field) {
     const std::size_t channels = field.name == "rgba" ? 4 : 3;
     Array<u8> colours(rows_of(cloud) * channels);
@@ -83,7 +83,7 @@ std::string field_names(const PCLPointCloud2& cloud) {
     return enumerated(names);
 }
 
-/// The three fields of these names; empty unless all exist, with one number each of the same type.
+/// The three fields with these names. Empty unless all exist and each has one number of the same type.
 std::vector<const PCLPointField*> triple(const PCLPointCloud2& cloud, std::array<std::string_view, 3> names) {
     std::vector<const PCLPointField*> fields;
     for (std::string_view name : names) {
@@ -98,25 +98,27 @@ std::string free_name(const ColumnTable& table, const std::string& wanted, const
     std::string name = wanted;
     for (std::size_t number = 2; table.find(name); ++number) name = wanted + "_" + std::to_string(number);
     if (name != wanted)
-        warn(options.on_warning, "the field {} became the column '{}': its own name is taken", quote(wanted), name);
+        warn(options.on_warning, "the field {} became the column '{}', because another column has its name",
+             quote(wanted), name);
     return name;
 }
 
-/// x, y and z; some programs write X, Y and Z.
+/// The names of the position fields: x, y and z, or X, Y and Z, which some programs write.
 std::array<std::string_view, 3> axes_of(const PCLPointCloud2& cloud) {
     if (!field_named(cloud, "x") && field_named(cloud, "X")) return {"X", "Y", "Z"};
     return {"x", "y", "z"};
 }
 
-/// x, y and z of every row. Throws Error when one of the fields is missing or has several numbers.
+/// The positions of all rows. Throws Error if one of the fields is missing or has several numbers.
 Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
     Array<Vec3> positions(rows_of(cloud));
     const std::array<std::string_view, 3> axes = axes_of(cloud);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const PCLPointField* field = field_named(cloud, axes[axis]);
         if (!field || field->count != 1)
-            throw Error("has no field '{}'; points need x, y and z, it has {}", axes[axis], field_names(cloud))
-                .hint("rename the fields of its coordinates in the line FIELDS of its header");
+            throw Error("it has no field '{}'; points need x, y and z; its fields are {}", axes[axis],
+                        field_names(cloud))
+                .hint("rename the coordinate fields in the FIELDS line of the header");
         visit_scalar(require_type(*field), [&]<class T>(T) {
             for (std::size_t row = 0; row < positions.size(); ++row) {
                 T value;
@@ -128,8 +130,8 @@ Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
     return positions;
 }
 
-/// Everything else, by the names that pcd.hpp gives. A field whose name is already that of a column (packed colours and
-/// normals) gets another one, with a warning.
+/// The columns of all other fields, with the names that pcd.hpp states. A field whose name is already that of a column
+/// (packed colours and normals) gets another name, with a warning.
 ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) {
     ColumnTable table;
     const std::array<std::string_view, 3> axes = axes_of(cloud);
@@ -150,7 +152,7 @@ ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) 
     return table;
 }
 
-/// The column `approach`: unit vectors from the points to the sensor, 0 where there is none.
+/// The column `approach`: unit vectors from the points to the sensor, 0 for points that are NaN or at the sensor.
 Column directions_to(const Vec3& sensor, std::span<const Vec3> positions) {
     Array<float> numbers;
     for (const Vec3& position : positions) {
@@ -161,7 +163,7 @@ Column directions_to(const Vec3& sensor, std::span<const Vec3> positions) {
     return {"approach", 3, Buffer<float>(std::move(numbers))};
 }
 
-// The bytes of the rows.
+// Bytes of the rows from the file.
 
 /// Reads one number of the field's type to `to`.
 void read_number(TextCursor& text, const PCLPointField& field, std::uint8_t* to) {
@@ -175,9 +177,9 @@ void read_number(TextCursor& text, const PCLPointField& field, std::uint8_t* to)
     });
 }
 
-/// The rows of an ascii file into `cloud.data`. PCL's own reader would read unreadable numbers as zeros. Throws Error
-/// with the line: a row with another number of numbers than a point has, a number that its field's type cannot hold,
-/// fewer or more rows than the header declares. Pre: the cloud has the fields and the size of `header`.
+/// Reads the rows of an ascii file into `cloud.data`. PCL's own reader would read unreadable numbers as zeros. Throws
+/// Error with the line for a row with too few or too many numbers, for a number that its field's type cannot hold, and
+/// for fewer or more rows than the header declares. Pre: the cloud has the fields and the size of `header`.
 void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& cloud) {
     TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
     for (u64 row = 0; row < header.points; ++row) {
@@ -201,7 +203,7 @@ void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& 
                     count_text(header.points, "point", "points"));
 }
 
-/// PCL splits the lines of a malformed header differently, and its fields may then reach beyond the points.
+/// PCL splits the lines of a malformed header in another way, and its fields may then extend beyond the points.
 void require_fields_inside(const PCLPointCloud2& cloud, const PcdHeader& header) {
     bool fits = cloud.point_step == header.row_bytes && cloud.data.size() == header.points * header.row_bytes;
     for (const PCLPointField& field : cloud.fields) {
@@ -249,7 +251,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     if (is_grid)
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
     if (header.bytes_behind > 0)
-        warn(options.on_warning, "{} behind the last point and left out",
+        warn(options.on_warning, "{} left out after the last point",
              count_text(header.bytes_behind, "byte was", "bytes were"));
     if (header.has_viewpoint)
         warn(options.on_warning,
@@ -265,7 +267,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     points.frame = declared_frame(loaded.comments, options);
     Array<Vec3> positions = positions_of(cloud);
     ColumnTable columns = columns_of(cloud, options);
-    // Programs write an identity also where no sensor was, but only a sensor makes a grid.
+    // Programs write an identity VIEWPOINT even without a sensor, but only a sensor produces a grid.
     if ((header.has_viewpoint || is_grid) && !columns.find("approach"))
         columns.add(directions_to(header.sensor, positions));
     move_near_origin(positions, points.frame);

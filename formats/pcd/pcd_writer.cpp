@@ -29,7 +29,7 @@ bool is_colour(const Column& column) {
            column.components() <= 4;
 }
 
-/// Fields are separated by blanks, so a name must not contain one.
+/// Replaces blanks in a name, because blanks separate fields.
 std::string field_name(std::string name) {
     for (char& c : name)
         if (static_cast<unsigned char>(c) <= ' ' || c == '\x7f') c = '_';
@@ -38,10 +38,10 @@ std::string field_name(std::string name) {
 
 struct WrittenColumn {
     const Column* column;
-    std::string field;  ///< for columns without a meaning of their own
+    std::string field;  ///< name of the field; empty for normals and colours
 };
 
-/// Every column under a unique field name. Changed names give a warning.
+/// Gives every column a unique field name. Warns about changed names.
 std::vector<WrittenColumn> written_columns(const PointCloud& cloud, const WriteOptions& options) {
     WrittenNames names("PCD", options, {"x", "y", "z", "_", "normal_x", "normal_y", "normal_z", "rgb", "rgba"});
     std::vector<WrittenColumn> columns;

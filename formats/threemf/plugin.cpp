@@ -4,7 +4,7 @@
 
 SCANMILL_FORMAT() {
     using namespace scanmill;
-    // Its files begin like every ZIP archive, so only the extension identifies them.
+    // 3MF files begin like every ZIP archive, so only the extension identifies them.
     return {{"3MF", {"3mf"}, {}, {kind_of<TriangleMesh>()}, false},
             {},
             {{kind_of<TriangleMesh>(), threemf::write_threemf}}};

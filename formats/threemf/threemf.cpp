@@ -54,7 +54,7 @@ void require_solid(const TriangleMesh& mesh) {
             .hint("reverse the triangles, or write STL, GLB or VTP");
 }
 
-/// Exact in single precision.
+/// The offset of the object, exact in single precision.
 Vec3 offset_of(const TriangleMesh& mesh) {
     BoundingBox box = bounding_box(mesh.positions.span());
     box.low += mesh.frame.origin;
@@ -75,7 +75,7 @@ std::string_view name_of(LengthUnit unit) {
     return "millimeter";
 }
 
-/// Writes 'x="1" y="2" z="3"', as the shortest decimals that read back equal.
+/// Writes 'x="1" y="2" z="3', with the shortest decimals that read back equal; the caller closes the last quote.
 template <class Numbers>
 void put_attributes(const std::array<std::string_view, 3>& names, const Numbers& numbers, OutputBuffer& xml) {
     for (int i = 0; i < 3; ++i) {
@@ -131,7 +131,7 @@ void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& op
     warn_bare_triangles(mesh, "3MF", options);
     if (mesh.frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
-             "3MF needs a unit and none is known: 1 was written as 1 mm; declare the scan's unit to avoid this");
+             "3MF needs a unit, but the scan has none: 1 was written as 1 mm; declare the scan's unit to avoid this");
     const Vec3 offset = offset_of(mesh);
     const Frame local{mesh.frame.unit, mesh.frame.origin - offset, ""};
     warn_lost_precision(local, mesh.positions.span(), true, "3MF", options);

@@ -2,11 +2,12 @@
 #pragma once
 /// 3MF, the files of 3D printing: closed meshes.
 ///
-/// Unit: the scan's own; an unknown one is written as millimetre, 3MF's default, with a warning. Only closed, oriented
-/// manifolds whose triangles face outwards are written; intersections of triangles are not checked. The frame's name is
-/// that of the object. Coordinates have single precision, as 3MF's readers do, with a warning when that moves one by
-/// more than a millionth of the diagonal. Far from zero, the build item's transform moves the object to its position,
-/// and the vertices contain the remainder. Columns and sharp edges are left out, with a warning.
+/// The unit is that of the scan. An unknown unit is written as millimetre, 3MF's default, with a warning. Only closed,
+/// oriented manifolds whose triangles face outwards are written; intersections of triangles are not checked. The object
+/// has the frame's name. Coordinates have single precision, like those of 3MF's readers. A warning is given if this
+/// moves a coordinate by more than a millionth of the diagonal. Far from zero, the build item's transform moves the
+/// object to its position, and the vertices contain the remainder. Columns and sharp edges are left out, with a
+/// warning.
 ///
 /// Equal values give equal bytes. Source: 3MF core specification 1.2.
 

@@ -13,7 +13,7 @@ namespace scanmill::threemf {
 
 namespace {
 
-/// Compresses a text piece by piece.
+/// Compresses a text that arrives in parts.
 class Deflater {
 public:
     Deflater() {
@@ -50,7 +50,7 @@ private:
 
 constexpr std::uint16_t zero = 0, version = 20;
 
-/// Appends to `bytes` what `write` writes.
+/// Appends the output of `write` to `bytes`.
 template <class Write>
 void append(std::string& bytes, Write&& write) {
     OutputBuffer out([&](std::string_view piece) { bytes += piece; });
@@ -65,10 +65,10 @@ void ZipWriter::add(std::string_view name, const std::function<void(OutputBuffer
     OutputBuffer text([&](std::string_view piece) { part.add(piece); });
     write(text);
     text.flush();
-    part.add("", Z_FINISH);  // not {}: at a null pointer zlib restarts the checksum
+    part.add("", Z_FINISH);  // not {}, because zlib restarts the checksum at a null pointer
     constexpr std::size_t headers = 1 << 10;
     if (std::max(part.size, size_ + part.compressed.size() + headers) > std::numeric_limits<u32>::max())
-        throw Error("the file would have {} bytes, and its format, ZIP, holds less than 4 GiB", part.size)
+        throw Error("a model of {} bytes is too large; 3MF files are ZIP archives of less than 4 GiB", part.size)
             .hint("write PLY or VTP, or fewer triangles");
 
     // The local header and the directory have these fields in common.

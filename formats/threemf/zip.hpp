@@ -16,7 +16,7 @@ class ZipWriter {
 public:
     explicit ZipWriter(OutputBuffer& out) : out_(out) {}
 
-    /// Adds the part that `write` writes. Throws Error if the part or the archive has 4 GiB or more.
+    /// Adds a part with the output of `write`. Throws Error if the part or the archive has 4 GiB or more.
     void add(std::string_view name, const std::function<void(OutputBuffer&)>& write);
     /// Writes the directory. Call it once, after the last part.
     void finish();

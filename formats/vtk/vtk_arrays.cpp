@@ -21,7 +21,7 @@ namespace scanmill::vtk {
 
 namespace {
 
-/// Whether the column is a list, which is left out with a warning.
+/// Whether the column is a list. Warns that such a column is left out.
 bool is_left_out(const Column& column, std::string_view format, const WriteOptions& options) {
     if (column.is_list())
         warn(options.on_warning, "{} left out the lists of the column '{}'; PLY keeps them", format, column.name());
@@ -32,7 +32,7 @@ vtkSmartPointer<vtkDataArray> view(const Column& column, std::string_view name) 
     return array_of(column.type(), column.bytes().data(), column.rows(), column.components(), name);
 }
 
-/// Marks the well-known columns for VTK.
+/// Marks normals, texture coordinates and colours as such for VTK.
 void mark(const Column& column, const vtkSmartPointer<vtkDataArray>& array, vtkDataSetAttributes& attributes) {
     const u32 components = column.components();
     const bool is_float = column.type() == ScalarType::float32 || column.type() == ScalarType::float64;
@@ -53,13 +53,13 @@ vtkSmartPointer<vtkCellArray> cells_with(vtkSmartPointer<Array> vertices, vtkIdT
     return cells;
 }
 
-/// VTK's arrays are never read-only; its writers change nothing.
+/// VTK has no read-only arrays. Its writers change nothing, so the cast is safe.
 template <class T>
 T* writable(const void* numbers) {
     return const_cast<T*>(static_cast<const T*>(numbers));
 }
 
-constexpr int keep_the_memory = 1;  // vtk: "save"
+constexpr int keep_the_memory = 1;  // VTK calls this argument "save"
 
 /// Collects the first error message that VTK would print.
 class KeptError : public vtkCommand {
@@ -79,7 +79,7 @@ vtkSmartPointer<vtkDataArray> array_of(ScalarType type, const void* numbers, std
                                        std::string_view name) {
     return visit_scalar(type, [&]<class T>(T) -> vtkSmartPointer<vtkDataArray> {
         const auto array = vtkSmartPointer<vtkAOSDataArrayTemplate<T>>::New();
-        array->SetName(xml_escaped(name).c_str());  // VTK writes names as they are
+        array->SetName(xml_escaped(name).c_str());  // VTK does not escape names
         array->SetNumberOfComponents(static_cast<int>(components));
         array->SetArray(writable<T>(numbers), static_cast<vtkIdType>(rows * components), keep_the_memory);
         return array;
@@ -183,7 +183,7 @@ void write(vtkXMLWriter& writer, vtkPointSet& data, OutputBuffer& out) {
     writer.SetByteOrderToLittleEndian();
     writer.WriteToOutputStringOn();
     if (writer.Write() == 0 || !kept->sentence.empty())
-        throw Error("VTK could not write it: {}", kept->sentence.empty() ? "no reason was given" : kept->sentence)
+        throw Error("VTK could not write the file: {}", kept->sentence.empty() ? "no reason was given" : kept->sentence)
             .hint("write PLY");
     out.text("<?xml version=\"1.0\"?>\n");
     out.text(writer.GetOutputString());

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Our values as VTK's arrays, and VTK's XML files as bytes; shared by VTP and VTU.
+/// Our values as VTK's arrays, and VTK's XML files as bytes. Shared by VTP and VTU.
 ///
 /// Columns, and other data whose layout in memory is VTK's, are viewed and not copied: the value must outlive the data
-/// set. Column names are kept, except control characters and invalid UTF-8, which become '_', with a warning. `normal`
-/// (3 numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals, scalars and texture
-/// coordinates. VTK has no lists: they are left out, with a warning.
+/// set. Column names are kept, but control characters and invalid UTF-8 become '_', with a warning. `normal` (3
+/// numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals, scalars and texture
+/// coordinates. VTK has no lists, so list columns are left out, with a warning.
 ///
-/// In the field data, as far as known: `unit` (a text such as `mm`), `frame` (its name), `origin` (three doubles near
-/// the data; the positions already include it, so a viewer with single precision may subtract it).
+/// The field data contain, as far as known: `unit` (a text such as `mm`), `frame` (its name), and `origin` (three
+/// doubles near the data). Positions include the origin; a viewer with single precision may subtract it.
 
 #include <vtkCellArray.h>
 #include <vtkDataSetAttributes.h>
@@ -37,19 +37,20 @@ vtkSmartPointer<vtkDataArray> array_of(std::span<const T> numbers, u32 component
 /// Adds the columns; `format` is the name of the format in warnings.
 void add_columns(const ColumnTable& columns, std::string_view format, const WriteOptions& options,
                  vtkDataSetAttributes& attributes);
-/// The same for arrays of the whole file; `prefix` precedes each name.
+/// The same for field data, which belong to the whole file; `prefix` precedes each name.
 void add_columns(const ColumnTable& columns, std::string_view prefix, std::string_view format,
                  const WriteOptions& options, vtkFieldData& field);
 
-/// World coordinates, as double.
+/// The positions in world coordinates, as double.
 vtkSmartPointer<vtkPoints> points_of(const Frame& frame, std::span<const Vec3> positions);
 
-/// Cells of `corners` vertices each; 32-bit numbers where they suffice.
+/// Cells of `corners` vertices each, with 32-bit numbers if these suffice.
 vtkSmartPointer<vtkCellArray> cells_of(std::span<const u32> vertices, vtkIdType corners, std::size_t points);
-/// The cells { first }, { first + 1 }, … , `count` of them: makes points visible.
+/// The cells { first }, { first + 1 }, … , `count` of them. Such cells make points visible.
 vtkSmartPointer<vtkCellArray> single_points(u32 first, std::size_t count);
 
-/// As numbers, a text is one uint8 for each byte of its UTF-8: meshio does not read files with strings.
+/// How a text is written. As numbers it is one uint8 for each byte of its UTF-8, because meshio does not read files
+/// with strings.
 enum class Text { as_string, as_numbers };
 void add_frame(const Frame& frame, Text text, vtkFieldData& field);
 void add_text(std::string_view name, std::span<const std::string> texts, vtkFieldData& field);

@@ -19,7 +19,7 @@ namespace {
 constexpr u8 touch_type = 0, direction_type = 1, first_move_type = 2;
 const std::vector<std::string> type_names{"touch", "direction", "clearance", "approach", "retract"};
 
-/// The cells of a plan: first the touches, then lines.
+/// The cells of a plan: first the touches, then the lines.
 struct ProbeCells {
     Array<Vec3> points, directions;
     vtkSmartPointer<vtkCellArray> lines = vtkSmartPointer<vtkCellArray>::New();
@@ -58,8 +58,8 @@ ProbeCells cells_of(const ProbePlan& plan) {
     return cells;
 }
 
-/// The numbers of a field, one for each cell. An index that may be undefined is a double, and NaN then; the names of an
-/// enumeration's numbers are field data.
+/// Adds the numbers of a field, one for each cell. An index that may be undefined is written as a double, and as NaN if
+/// it is undefined. The names of an enumeration's values are added to the field data.
 template <class Field>
 void add_numbers(ProbeCells& cells, const Field& field, vtkPolyData& data) {
     using Member = typename Field::Member;

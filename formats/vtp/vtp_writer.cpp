@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view format = "VTP";
 
-/// The vertex numbers of the simplices, end to end.
+/// The vertex numbers of all simplices, one simplex after the other.
 template <class Simplex>
 std::span<const u32> vertices_of(const Buffer<Simplex>& simplices) {
     static_assert(sizeof(Simplex) == std::tuple_size_v<Simplex> * sizeof(u32));
@@ -30,7 +30,7 @@ std::span<const u32> vertices_of(const Buffer<Simplex>& simplices) {
 constexpr u8 corner_type = 3;
 const std::vector<std::string> type_names{"outer boundary", "hole", "crease", "corner"};
 
-/// One row per point of the file: first those of the polylines, then the corners.
+/// One row per point of the file: first the points of the polylines, then the corners.
 struct FeaturePoints {
     Array<u32> vertex;
     Array<Vec3> position, left_normal, right_normal;
@@ -66,7 +66,7 @@ void warn_of_unused(const FeatureGraph& graph, const Array<u32>& used, const Wri
     for (const u32 vertex : used) is_used[vertex] = true;
     const auto unused = static_cast<u64>(std::ranges::count(is_used, false));
     if (unused > 0)
-        warn(options.on_warning, "VTP left out {} that no polyline and no corner names",
+        warn(options.on_warning, "VTP left out {} outside all polylines and corners",
              count_text(unused, "vertex", "vertices"));
 }
 

@@ -2,13 +2,14 @@
 #pragma once
 /// VTU, the XML files of VTK's unstructured grids: tetrahedra, for ParaView, PyVista and meshers.
 ///
-/// Positions are world coordinates, as double. Columns, unit and frame: vtk/vtk_arrays.hpp; `unit` and `frame` are the
-/// bytes of their text, because meshio does not read files with strings. Cell data: `inside`, 1 or 0, when the cells
-/// are labelled. Neighbours are not written, because they follow from the cells.
+/// Positions are world coordinates, as double. Columns, unit and frame are written as described in vtk/vtk_arrays.hpp.
+/// `unit` and `frame` are the bytes of their text, because meshio does not read files with strings. Cell data:
+/// `inside`, 1 or 0, if the cells are labelled. Neighbours are not written, because they follow from the cells.
 ///
-/// Patches are Bezier tetrahedra of degree 3, each with its own 20 points, and point data `weights`: the function that
-/// VTK interpolates is the patches' own, and its contour 0 the surface. Cell data: `kind` (0 face, 1 edge), `side` (1
-/// outside the mesh), `patch` (the row of the mesh's triangle).
+/// Patches are Bezier tetrahedra of degree 3, each with its own 20 points. The point data `weights` are the patches'
+/// weights, so VTK interpolates the patches' own function; its contour 0 is the surface. Cell data: `kind` (PatchKind),
+/// `side` (1 outside the mesh), `patch` (the row of the mesh's triangle), `combine` (Combine), `edge` and `partner` (-1
+/// without an edge or a partner).
 
 #include "scanmill/formats/common/format.hpp"
 

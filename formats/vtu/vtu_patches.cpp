@@ -40,7 +40,7 @@ void write_vtu_patches(const Value& value, OutputBuffer& out, const WriteOptions
     const PatchComplex& patches = *value.get<PatchComplex>();
     const std::size_t tets = patches.tets.size(), each = exponents.size();
     if (tets > ~u32(0) / each)
-        throw Error("VTU numbers points in 32 bits here; {} tetrahedra need {}", tets, tets * each);
+        throw Error("VTU patches have points with 32-bit numbers; {} tetrahedra need {} points", tets, tets * each);
     Array<Vec3> points(tets * each);
     Array<double> weights(tets * each);
     for (std::size_t tet = 0; tet < tets; ++tet)

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view format = "VTU";
 
-/// `weights`, or a name that no column has.
+/// `weights`, or a longer name if a column has this name.
 std::string name_for_weights(const ColumnTable& columns) {
     std::string name = "weights";
     while (columns.find(name)) name += "-of-tets";
@@ -31,7 +31,7 @@ void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& option
     const auto data = vtkSmartPointer<vtkUnstructuredGrid>::New();
     data->SetPoints(points_of(tets.frame, tets.positions.span()));
     const std::span vertices(reinterpret_cast<const u32*>(tets.cells.data()), 4 * tets.cells.size());
-    // VTK orders corners as TetMesh does: the fourth lies on the side to which the normal of the first three points.
+    // VTK orders corners like TetMesh: the normal of the first three points is directed to the side of the fourth.
     data->SetCells(VTK_TETRA, cells_of(vertices, 4, tets.positions.size()));
     add_columns(tets.vertex_columns, format, options, *data->GetPointData());
     if (!tets.weights.empty())

@@ -77,7 +77,7 @@ TEST(GlbLosses, AreReportedByName) {
                 ElementsAre(HasSubstr("left out the column 'lists': it holds lists"),
                             HasSubstr("left out the column 'wide': it has 5 numbers per row"),
                             HasSubstr("left out the column 'holes': 1 of its numbers is NaN or infinite"),
-                            HasSubstr("left out the column 'id': 1 of its numbers is a whole number beyond 2^24"),
+                            HasSubstr("left out the column 'id': 1 of its numbers is beyond 2^24"),
                             HasSubstr("left out the column 'vast': 1 of its numbers is beyond"),
                             HasSubstr("rounded the column 'time' to single precision"),
                             HasSubstr("the column 'a b' under the name '_A_B'"),
@@ -93,7 +93,7 @@ TEST(GlbLosses, NormalsWithoutDirection_AreNotWrittenAsNormals) {
     EXPECT_FALSE(glb.attribute("NORMAL"));
     EXPECT_EQ(glb.number<float>("_NORMAL", 0, 2), 1.f);
     EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of them has no")));
+                ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of its rows has no")));
 }
 
 TEST(GlbLosses, TrianglesWithoutAreaInSinglePrecision_AreReported) {

@@ -24,7 +24,7 @@ TEST(PcdReader_Refuses, InvalidHeaders) {
     EXPECT_THAT(refusal("# .PCD v0.7\nVERSION 0.7\n"), HasSubstr("ends before its DATA line"));
     EXPECT_THAT(refusal(with("DATA ascii", "DATA runes")), HasSubstr("DATA is 'runes'"));
     EXPECT_THAT(refusal(with("WIDTH 2", "WIDTH two")), HasSubstr("WIDTH needs a whole number; found 'two'"));
-    EXPECT_THAT(refusal(with("POINTS 2", "POINTS 3")), HasSubstr("promises 3 points, and 2 × 1"));
+    EXPECT_THAT(refusal(with("POINTS 2", "POINTS 3")), HasSubstr("promises 3 points, but WIDTH × HEIGHT is 2 × 1"));
     EXPECT_THAT(refusal(with("SIZE 4 4 4", "SIZE 4 4")), HasSubstr("3 fields and gives 2 sizes"));
     EXPECT_THAT(refusal(with("SIZE 4 4 4", "SIZE 4 4 3")), HasSubstr("the size 3"));
     EXPECT_THAT(refusal(with("x y z", "x y w")), HasSubstr("no field 'z'"));
@@ -50,7 +50,7 @@ TEST(PcdReader, CoordinatesInCapitals_ArePositions) {
     EXPECT_TRUE(both->columns.find("X"));
     EXPECT_THAT(
         sentence_of([] { read_bytes(header("X Y height", "4 4 4", "F F F", 1, "ascii") + "1 2 3\n", "a.pcd"); }),
-        HasSubstr("has no field 'Z'; points need x, y and z, it has 'X', 'Y' and 'height'"));
+        HasSubstr("has no field 'Z'; points need x, y and z; its fields are 'X', 'Y' and 'height'"));
 }
 
 TEST(PcdReader_Refuses, PaddingInCompressedFiles) {
@@ -155,7 +155,7 @@ TEST(PcdReader_BytesAfterTheLastPoint, AreReported) {
     Warnings warnings;
     points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(24, '\0') + "later", "a.pcd",
               &warnings);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("5 bytes were left out after the last point")));
     warnings.sentences.clear();
     points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(4096, '\0'), "a.pcd",
               &warnings);

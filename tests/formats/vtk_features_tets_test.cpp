@@ -29,7 +29,7 @@ FeatureGraph crease_and_hole() {
 TEST(VtpFeatures, PolylinesAndCorners_AreCellsWithTheirTypes) {
     Warnings warnings;
     const auto data = through_vtp(crease_and_hole(), &warnings);
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 vertex that no polyline and no corner names")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 vertex outside all polylines and corners")));
     EXPECT_EQ(data->GetNumberOfPoints(), 7);
     EXPECT_THAT(cells_in(data->GetVerts()), ElementsAre(ElementsAre(6)));
     EXPECT_THAT(cells_in(data->GetLines()), ElementsAre(ElementsAre(0, 1, 2), ElementsAre(3, 4, 5, 3)));
