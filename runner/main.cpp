@@ -17,9 +17,9 @@
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
     if (argc == 2 && argv[1] == std::string_view("worker")) return scanmill::serve_as_worker();
-    // A reader that closes the output early ends the program quietly, also if the caller ignores the signal.
+    // If the reader of the output closes it early, the program ends quietly, even if the caller ignores the signal.
     std::signal(SIGPIPE, SIG_DFL);
-    // Writing beyond the largest file that the system allows then fails with a reason instead of ending the program.
+    // With this, writing a file beyond the system's size limit fails with an error code and does not end the program.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);

@@ -50,7 +50,7 @@ void add_cache(CLI::App& app, Action& chosen) {
     const auto add = [&](const char* name, const char* help, int (*act)(const Options&)) {
         auto [part, options] = add_command<Options>(*command, chosen, name, help, act);
         add_cache_options(part, options.cache);
-        part.add_flag("--json", options.json, "Print it as JSON");
+        part.add_flag("--json", options.json, "Print the result as JSON");
     };
     add("info", "Prints the folder, the number of results and their size", info);
     add("clear", "Removes all results; they are computed again when they are needed", clear);

@@ -25,7 +25,7 @@ std::string sources_text(const Plan& plan, const PlannedInput& input) {
     return text;
 }
 
-/// Whether the step reads its scan in chunks, if the file's format allows it.
+/// Whether the step reads this input in chunks, provided that the file's format allows it.
 bool streams(const Plan& plan, const PlannedInput& input) {
     return std::ranges::any_of(
         input.sources, [&](const ValueSource& source) { return !source.step && is_streamed(plan, source.input); });
@@ -37,7 +37,7 @@ std::string source_node(const ValueSource& source) {
     return source.step ? fmt::format("step{}", *source.step) : fmt::format("input{}", source.input);
 }
 
-/// "points", "mesh or points".
+/// The kinds that the input accepts: "points", "mesh or points".
 std::string kinds_text(const WorkflowInput& input) {
     std::string text(name_of(input.kind));
     for (const Kind kind : input.also) text += " or " + std::string(name_of(kind));
@@ -105,7 +105,7 @@ Json plan_json(const Plan& plan) {
             for (const ValueSource& source : input.sources) entry["in"][input.port].push_back(describe(plan, source));
             if (streams(plan, input)) entry["streams"].push_back(input.port);
         }
-        if (!step.file.empty()) entry["file"] = step.file;  // that line and column are in
+        if (!step.file.empty()) entry["file"] = step.file;  // the file of `line` and `column`
         for (const auto& [name, value] : step.parameters.values)
             if (const std::string shown = text(value); !shown.empty()) entry["parameters"][name] = shown;
         for (const PlannedExpectation& expectation : step.expectations) entry["expect"].push_back(expectation.text);
@@ -126,7 +126,7 @@ struct CheckOptions {
     std::string format = "text";
 };
 
-/// Plans are to be printed only without errors.
+/// A checked file. Plans may be printed only if there are no errors.
 struct CheckedFile {
     std::vector<Diagnostics> diagnostics;
     std::vector<std::shared_ptr<const Plan>> plans;
@@ -154,7 +154,7 @@ CheckedFile check_file(const std::string& file, const FilterLibrary& library, co
     return result;
 }
 
-/// Adds the plan to the last entry of its workflow's file.
+/// Adds the plan to the last entry with its workflow's file.
 void add_plan(Json& entries, const Plan& plan) {
     const auto entry = std::find_if(entries.rbegin(), entries.rend(),
                                     [&](const Json& each) { return each["file"] == plan.workflow.file; });
@@ -164,7 +164,7 @@ void add_plan(Json& entries, const Plan& plan) {
         (*entry)["plan"] = plan_json(plan);
 }
 
-/// Prints the errors and plans of each file at once, or all results as JSON at the end.
+/// Prints the errors and plans of each file immediately. With --json, prints all results at the end.
 int check(const CheckOptions& options) {
     const FilterLibrary library = open_library();
     const Settings settings = parse_settings(options.settings);

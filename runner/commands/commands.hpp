@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The commands: each adds itself to the parser and, when it is called, returns the program's exit code. Results go to
-/// stdout, everything else to stderr.
+/// The commands. Each function adds a command to the parser; the command's action returns the exit code of the program.
+/// Results go to stdout, everything else to stderr.
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -12,14 +12,14 @@
 
 namespace scanmill::runner {
 
-/// 0 done, 1 some scans failed or an expect was not met, 2 bad arguments or workflow, 3 our own fault, 4 the gate of a
-/// batch tripped (whether or not scans failed), 130 interrupted.
+/// 0: done. 1: some scans failed or an expectation was not met. 2: bad arguments or workflow. 3: internal error. 4: the
+/// gate of a batch tripped, whether or not scans failed. 130: interrupted.
 enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, gate_tripped = 4, interrupted = 130 };
 
-/// The action of the command on the command line.
+/// The action of the command that was chosen on the command line.
 using Action = std::function<int()>;
 
-/// Adds a command that calls `act` with its options, which the caller declares on the result.
+/// Adds a command that calls `act` with its options. The caller declares the options on the returned command.
 template <class Options>
 std::pair<CLI::App&, Options&> add_command(CLI::App& parent, Action& chosen, const char* name, const char* help,
                                            int (*act)(const Options&)) {

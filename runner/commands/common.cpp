@@ -94,10 +94,11 @@ CLI::Option* add_cache_options(CLI::App& command, CacheOptions& options) {
     command
         .add_option_function<std::string>(
             "--cache-limit", [&](const std::string& size) { options.limit = parse_byte_size(size); },
-            "Beyond this size the results used longest ago are removed: 500 MiB, 20 GiB")
+            "Size limit, such as 500 MiB or 20 GiB; results used longest ago are removed first")
         ->default_str(byte_size_text(Cache::default_limit));
-    return command.add_option("--cache", options.folder,
-                              "The cache's folder; without it $XDG_CACHE_HOME/scanmill, else ~/.cache/scanmill");
+    return command.add_option(
+        "--cache", options.folder,
+        "The cache's folder. Default: $XDG_CACHE_HOME/scanmill, or ~/.cache/scanmill if that is not set");
 }
 
 std::unique_ptr<Cache> open_cache(const CacheOptions& options, const Warn& warn) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Completion scripts, made from the commands and options that the program has.
+// Completion scripts, generated from the program's commands and options.
 
 #include <fmt/format.h>
 
@@ -16,19 +16,19 @@ namespace scanmill::runner {
 namespace {
 
 struct Option {
-    std::string name;  ///< "--set"; empty: the command's argument
+    std::string name;  ///< such as "--set"
     std::string help;
-    std::string words;  ///< the values that it accepts, with blanks between; empty: any, or none
+    std::string words;  ///< accepted values, separated by blanks; empty: any value, or no value
     bool takes_value;
 };
 
 struct Command {
     std::string name, help;
     std::vector<Option> options;
-    std::string words;  ///< the arguments that it accepts in place of files
+    std::string words;  ///< accepted arguments; empty: files
 };
 
-/// The set of CLI::IsMember, which is part of the option's type: "TEXT:{um,mm}".
+/// The accepted words of an option. The set of CLI::IsMember is part of the option's type: "TEXT:{um,mm}".
 std::string words_of(const CLI::Option& option) {
     const std::string type = option.get_type_name();
     const std::size_t open = type.find('{'), close = type.find('}');
@@ -56,7 +56,7 @@ std::vector<Command> commands_of(const CLI::App& app) {
     return commands;
 }
 
-/// The text without characters that end a quoted word of a shell, or have a meaning in zsh's descriptions.
+/// The text without characters that end a quoted word of a shell, or that have a meaning in zsh's descriptions.
 std::string plain(std::string_view text) {
     std::string result;
     for (char c : text) {
@@ -180,7 +180,7 @@ int completion(const CompletionOptions& options) {
     return done;
 }
 
-/// The values of a parameter that have names: choices, true and false, its word.
+/// The named values of a parameter: choices, true and false, and its word.
 std::vector<std::string> values_of(const ParameterSpec& parameter) {
     std::vector<std::string> values;
     for (const Choice& choice : parameter.choices) values.push_back(choice.name);
@@ -189,14 +189,15 @@ std::vector<std::string> values_of(const ParameterSpec& parameter) {
     return values;
 }
 
-/// Prints NAME=VALUE for every value; NAME= when there is none.
+/// Prints NAME=VALUE for every value; prints NAME= if there is none.
 template <class Values>
 void print_setting(const std::string& name, const Values& values) {
     if (values.empty()) fmt::print("{}=\n", name);
     for (const std::string& value : values) fmt::print("{}={}\n", name, value);
 }
 
-/// The values of a workflow's parameter are those of the filters' parameters that use it.
+/// Prints the settings of a workflow. The values of a workflow's parameter are those of the filter parameters that use
+/// it.
 void print_settings(const Workflow& workflow, const FilterLibrary& library) {
     std::map<std::string, std::set<std::string>> values;
     Diagnostics ignored("");
@@ -213,7 +214,7 @@ void print_settings(const Workflow& workflow, const FilterLibrary& library) {
         print_setting(parameter.name, values[parameter.name]);
 }
 
-/// Called by the scripts with the words after `scanmill` on the command line so far.
+/// The completion scripts call this with the words after `scanmill` on the command line so far.
 int complete_set(const std::vector<std::string>& words) {
     const FilterLibrary library = open_library();
     if (!words.empty() && words.front() == "measure") {

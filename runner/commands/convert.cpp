@@ -73,14 +73,14 @@ int convert(const Options& options) {
 
 void add_convert(CLI::App& app, Action& chosen) {
     auto [command, options] = add_command<Options>(
-        app, chosen, "convert", "Writes a scan or mesh in another format, which the extension decides", convert);
+        app, chosen, "convert", "Writes a scan or mesh in the format of the output's extension", convert);
     command.add_option("FROM", options.from, "The file to read")->required();
     command.add_option("TO", options.to, "The file to write")->required();
     add_unit_option(command, "--unit", options.unit, "The input's unit of length");
     add_unit_option(command, "--to-unit", options.to_unit, "Convert the coordinates to this unit");
     command.add_flag("--drop-invalid", options.drop_invalid,
-                     "Leave out points with a NaN or infinite coordinate, and their faces; of a point file also points "
-                     "too distant for the supported range");
+                     "Leave out points with a NaN or infinite coordinate, and their faces. Also leave out points of a "
+                     "point file that are too distant for the supported range");
 }
 
 }  // namespace scanmill::runner

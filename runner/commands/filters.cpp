@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `list` and `show`: the installed filters.
+// The commands `list` and `show`, which print the installed filters.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `schema` and `docs`: files generated from the filters' declarations.
+// The commands `schema` and `docs`, which generate files from the filters' declarations.
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ struct DocsOptions {
     std::filesystem::path folder;
 };
 
-/// Writes the file whole or not at all, and makes its folder if it is missing. Throws Error when it cannot be written.
+/// Writes the file completely or not at all; makes its folder if it is missing. Throws Error if that fails.
 void write_text(const std::filesystem::path& path, std::string_view text) {
     std::error_code trouble;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);
@@ -99,9 +99,8 @@ int docs(const DocsOptions& options) {
 void add_schema_and_docs(CLI::App& app, Action& chosen) {
     auto [schema_command, schema_options] =
         add_command<SchemaOptions>(app, chosen, "schema",
-                                   "Prints the JSON Schema of workflow or batch files (for editors), of what a command "
-                                   "prints with --json, or of the "
-                                   "JSON documents that steps write",
+                                   "Prints the JSON Schema of workflow or batch files (for editors), of a command's "
+                                   "--json output, or of the JSON documents that steps write",
                                    schema);
     std::vector<std::string> kinds{"workflow", "batch"};
     kinds.insert(kinds.end(), output_names().begin(), output_names().end());
@@ -109,18 +108,18 @@ void add_schema_and_docs(CLI::App& app, Action& chosen) {
     CLI::Option* kind =
         schema_command
             .add_option("KIND", schema_options.kind,
-                        "The schema to print: workflow (the default), batch, that of a command's output or of a "
-                        "document")
+                        "The schema to print: workflow (the default), batch, or the name of a command's output or of "
+                        "a document")
             ->check(CLI::IsMember(kinds));
     schema_command
         .add_option("-o,--output", schema_options.folder,
-                    "Write all into this folder instead: workflow.schema.json, batch.schema.json, "
+                    "Write all schemas into this folder instead: workflow.schema.json, batch.schema.json, "
                     "output/NAME.schema.json and documents/NAME.schema.json")
         ->excludes(kind);
 
     auto [docs_command, docs_options] =
         add_command<DocsOptions>(app, chosen, "docs", "Prints a page about every installed filter, in Markdown", docs);
-    docs_command.add_option("-o,--output", docs_options.folder, "Write one file per filter into this folder instead");
+    docs_command.add_option("-o,--output", docs_options.folder, "Write one page per filter into this folder instead");
 }
 
 }  // namespace scanmill::runner

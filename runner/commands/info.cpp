@@ -20,7 +20,7 @@ struct Options {
     bool json = false;
 };
 
-/// Coordinates have more digits than lengths: micrometres at a distance of 10^6 m.
+/// The value as text. Coordinates get more digits than lengths: micrometres at a distance of 10^6 m.
 std::string value_text(const Json& value, int digits = 9) {
     constexpr int digits_of_coordinates = 13;
     if (value.is_null()) return "not declared";
@@ -80,7 +80,7 @@ void add_info(CLI::App& app, Action& chosen) {
     auto [command, options] = add_command<Options>(
         app, chosen, "info", "Prints the content of files: counts, columns, size, unit, topology", info);
     command.add_option("FILE", options.files, "Scans or meshes")->required();
-    command.add_flag("--json", options.json, "Print it as JSON");
+    command.add_flag("--json", options.json, "Print the result as JSON");
 }
 
 }  // namespace scanmill::runner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `measure`: a workflow of one step, made here and run like any other.
+// The command `measure`: makes a workflow of one step and runs it like any other workflow.
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ const FilterSpec& measuring_filter(const FilterLibrary& library, const std::stri
     return *library.find(wanted.empty() ? names.front() : wanted);
 }
 
-/// Reads the value and the truth, measures, and writes the numbers.
+/// A workflow that reads the value and the truth, measures, and writes the numbers.
 Workflow measuring_workflow(const FilterSpec& spec, const Settings& settings) {
     Workflow workflow;
     workflow.name = spec.name;
@@ -60,7 +60,7 @@ Workflow measuring_workflow(const FilterSpec& spec, const Settings& settings) {
         step.in.push_back({name, {}, {{name, {}}}});
     }
     for (const auto& [name, value] : settings) {
-        if (value.sweep) throw Error("--set {}: a sweep is for workflows; give one value", name);
+        if (value.sweep) throw Error("--set {}: a sweep is allowed in workflows only; give one value", name);
         step.parameters.push_back({name, {}, value});
     }
     workflow.steps.push_back({std::move(step)});
@@ -68,14 +68,14 @@ Workflow measuring_workflow(const FilterSpec& spec, const Settings& settings) {
     return workflow;
 }
 
-/// --unit is also the unit of a truth that declares none.
+/// The unit of the truth. --unit also applies to a truth that declares no unit.
 LengthUnit unit_of_truth(const Options& options) {
     if (options.truth_unit != LengthUnit::unknown || options.unit == LengthUnit::unknown) return options.truth_unit;
     try {
         const std::optional<Frame> frame = frame_of(read_file(options.truth).value);
         return frame && frame->unit == LengthUnit::unknown ? options.unit : LengthUnit::unknown;
     } catch (const Error&) {
-        return LengthUnit::unknown;  // the run reports it
+        return LengthUnit::unknown;  // the run reports this error
     }
 }
 
@@ -145,19 +145,21 @@ void add_measure(CLI::App& app, Action& chosen) {
         app, chosen, "measure", "Measures the distance of a mesh from the truth, and the quality of the mesh", measure);
     command.add_option("MESH", options.mesh, "The mesh to measure")->required();
     command.add_option("TRUTH", options.truth, "The correct shape: a mesh, or points")->required();
-    add_unit_option(command, "--unit", options.unit, "The unit of MESH, and of TRUTH if that declares none");
+    add_unit_option(command, "--unit", options.unit, "The unit of MESH, and of TRUTH if TRUTH declares none");
     add_unit_option(command, "--truth-unit", options.truth_unit,
-                    "The unit of TRUTH, which is converted to that of MESH");
-    add_invalid_option(command, options.invalid,
-                       "Points of TRUTH with a NaN, infinite or too distant coordinate: drop or refuse. Default: drop "
-                       "where the format writes NaN for a ray without a return (PCD, PTX), else refuse");
+                    "The unit of TRUTH; TRUTH is converted to the unit of MESH");
+    add_invalid_option(
+        command, options.invalid,
+        "How to treat points of TRUTH with a NaN, infinite or too distant coordinate: drop or refuse. "
+        "Default: drop in formats that write NaN for a ray without a return (PCD, PTX), refuse in others");
     command.add_option("--filter", options.filter, "The filter that measures, if several are installed");
     command.add_flag("--certify", options.certify, "Bound the Hausdorff distance from below and above; takes longer");
     command.add_option("--set", options.settings,
-                       "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");
-    command.add_option("--threads", options.threads, "0: all cores. Does not change results")->capture_default_str();
+                       "A filter parameter's value, NAME=VALUE; `scanmill show measure` lists the parameters");
+    command.add_option("--threads", options.threads, "Number of threads; 0: all cores. Results do not depend on it")
+        ->capture_default_str();
     command.add_option("--seed", options.seed, "Seed of the samples")->capture_default_str();
-    command.add_flag("--json", options.json, "Print JSON");
+    command.add_flag("--json", options.json, "Print the metrics as JSON");
 }
 
 }  // namespace scanmill::runner

@@ -27,7 +27,7 @@ struct Options {
 
 bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\n") == std::string::npos; }
 
-/// Throws Error unless both are given.
+/// Throws Error unless both --who and --why are given.
 void require_reason(const Options& options) {
     const std::string action = options.accept ? "--accept" : "--revoke";
     if (!is_blank(options.who) && !is_blank(options.why)) return;
@@ -100,30 +100,31 @@ void add_report(CLI::App& app, Action& chosen) {
         add_command<Options>(app, chosen, "report",
                              "Compares a recorded run with the accepted one; exits with 4 if the gate tripped", report);
     command.add_option("DIR", options.folder, "The output folder of the runs")->required();
-    CLI::Option* against = command.add_option("--against", options.against,
-                                              "Compare with this folder's accepted run, or else its last one, DIR, or "
-                                              "with one of its runs, DIR:RUN. Default: "
-                                              "the accepted run in the same folder");
-    command.add_option("--run", options.run, "The run's number in `scanmill runs DIR`. Default: the last that ended");
-    CLI::Option* accept = command.add_flag(
-        "--accept", options.accept, "Make the run the one that later runs are compared with; needs --who, --why");
+    CLI::Option* against =
+        command.add_option("--against", options.against,
+                           "The run to compare with. DIR: the accepted run of that folder, or its last run if none is "
+                           "accepted; DIR:RUN: that run. Default: the accepted run in the same folder");
+    command.add_option("--run", options.run,
+                       "The run's number in `scanmill runs DIR`. Default: the last run that ended");
+    CLI::Option* accept = command.add_flag("--accept", options.accept,
+                                           "Accept the run: later runs are compared with it; needs --who and --why");
     CLI::Option* revoke =
-        command.add_flag("--revoke", options.revoke, "Take back the last acceptance; needs --who, --why");
-    command.add_option("--who", options.who, "Who accepts or revokes, for the records");
-    command.add_option("--why", options.why, "Why, for the records");
+        command.add_flag("--revoke", options.revoke, "Revoke the last acceptance; needs --who and --why");
+    command.add_option("--who", options.who, "Name of the person who accepts or revokes; it is recorded");
+    command.add_option("--why", options.why, "The reason; it is recorded");
     CLI::Option* metric =
         command.add_option("--metric", options.metric,
                            "The metric of the table of scans and variants: NAME, STEP.NAME, seconds, cpu-seconds or "
-                           "memory. Default: the first that the gate has a rule for");
+                           "memory. Default: the first metric with a rule in the gate");
     CLI::Option* format = command.add_option("--format", options.format, "Print text, junit (XML) or markdown")
                               ->check(CLI::IsMember({"text", "junit", "markdown"}));
     CLI::Option* table =
         command
             .add_option("--table", options.table,
-                        "Print every number of every cell of all ended runs, or of --run, as csv, and do not judge")
+                        "Print all numbers of all cells as csv, for all ended runs or for --run, without a verdict")
             ->check(CLI::IsMember({"csv"}));
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
-    CLI::Option* json = command.add_flag("--json", options.json, "Print it as JSON");
+    CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");
     format->excludes(json);
     for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
     accept->excludes(revoke);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `run` and `batch`: from the command line to a graph, and from its run to the report and the exit code.
+// The commands `run` and `batch`: make a graph from the command line, run it, and print the report.
 
 #include <fmt/format.h>
 
@@ -50,22 +50,23 @@ struct BatchOptions {
 
 constexpr unsigned most_jobs = 1024;
 
-// A signal handler may write only to such a variable.
+// A signal handler may only write to a variable of this type.
 volatile std::sig_atomic_t interrupt_requested = 0;
 
 void on_interrupt(int signal) {
     interrupt_requested = 1;
-    // A second signal ends the program at once. A terminal that closes sends SIGHUP twice: itself and by its shell.
+    // A second signal ends the program at once. SIGHUP is different: a closing terminal sends it twice, directly and
+    // through its shell.
     if (signal != SIGHUP) std::signal(signal, SIG_DFL);
 }
 
-/// The run stops in good order. A signal that is ignored, as SIGHUP is under nohup, stays ignored.
+/// A signal stops the run in an orderly way. A signal that is ignored, such as SIGHUP under nohup, stays ignored.
 void handle_interrupts() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-/// CLI11 itself reads -1 as the largest number and 010 as eight.
+/// A check for whole numbers, because CLI11 itself reads -1 as the largest number and 010 as eight.
 template <class Number>
 CLI::Validator whole_number() {
     return CLI::Validator(
@@ -79,7 +80,7 @@ CLI::Validator whole_number() {
         "");
 }
 
-/// Empty when the folder exists or can be made.
+/// Explains why the folder cannot be used; empty if it exists or can be made.
 std::string folder_error(const std::string& folder) {
     if (folder.empty()) return "the output folder's name is empty";
     std::error_code ignored;
@@ -98,17 +99,19 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
         ->capture_default_str()
         ->check(CLI::Validator(folder_error, ""));
     command
-        .add_option("-j,--jobs", options.session.jobs,
-                    "Worker processes; a crash in one does not affect the others; 0: run in this process, without time "
-                    "limits. Default: the number of cores, fewer for large scans")
+        .add_option(
+            "-j,--jobs", options.session.jobs,
+            "Number of worker processes; a crash in one does not affect the others. 0: run in this process, without "
+            "time limits. Default: the number of cores, fewer for large scans")
         ->check(whole_number<unsigned>())
         ->check(CLI::Range(0u, most_jobs));
     command
-        .add_option("--threads", options.session.threads,
-                    "Threads inside a filter; 0: the machine's cores shared among the jobs. Does not change results")
+        .add_option(
+            "--threads", options.session.threads,
+            "Number of threads in a filter; 0: the cores are divided among the jobs. Results do not depend on it")
         ->capture_default_str()
         ->check(whole_number<unsigned>());
-    command.add_option("--seed", options.seed, "Seed of everything random")
+    command.add_option("--seed", options.seed, "Seed of all random numbers")
         ->capture_default_str()
         ->check(whole_number<std::uint64_t>());
     CLI::Option* folder = add_cache_options(command, options.cache);
@@ -121,18 +124,18 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command
         .add_option_function<std::string>(
             "--keep", keep,
-            "Which values the cache stores: worth, if recomputing takes more than twice as long as writing; always; or "
-            "never")
+            "Which values the cache stores. worth: those that take more than twice as long to recompute as to write; "
+            "always: all; never: none")
         ->default_str("worth")
         ->check(CLI::IsMember({"worth", "always", "never"}));
     command.add_flag("--fail-fast", options.session.fail_fast, "Start no new step after a failure");
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     command.add_flag("--dry-run", options.dry_run,
-                     "Print the steps to run with reasons, the cached steps and the output files, and stop");
-    command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
+                     "Print the steps to run with reasons, the cached steps and the output files, then stop");
+    command.add_flag("-q,--quiet", options.quiet, "Print no progress on stderr");
 }
 
-/// Opens the cache. Returns nullptr with --no-cache; also, with a warning, if the cache folder cannot be opened.
+/// Opens the cache. Returns nullptr with --no-cache, and with a warning if the cache folder cannot be opened.
 std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn) {
     if (options.no_cache) return nullptr;
     try {
@@ -151,7 +154,8 @@ SessionSettings settings_for(const ExecuteOptions& options) {
     return settings;
 }
 
-/// Prints errors and warnings; with `json` also as JSON if there are errors. Returns whether there are none.
+/// Prints errors and warnings on stderr. With `json` also prints them as JSON on stdout, if there are errors. Returns
+/// true if there are no errors.
 bool report(const std::vector<Diagnostics>& all, bool json) {
     Json files = Json::array();
     for (const Diagnostics& diagnostics : all) {
@@ -175,13 +179,13 @@ public:
     std::string hash(const std::filesystem::path& file) const {
         return cache_ ? cache_->file_hash(file) : content_hash(file);
     }
-    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. For a batch, --json prints one
-    /// event per line during the run, and then the verdict of the batch's gate. Returns the exit code.
+    /// With --dry-run, prints the prediction. Otherwise runs the graph and prints the report. For a batch, --json
+    /// prints one event per line during the run, and then the verdict of the batch's gate. Returns the exit code.
     int run(const SessionTask& task, bool is_batch);
 
 private:
-    /// The comparison of the recorded run with the accepted one. Nothing: there is neither a gate nor an accepted run,
-    /// or no comparison, which is an error on stderr and in `code`.
+    /// The comparison of the recorded run with the accepted one. Empty if there is neither a gate nor an accepted run.
+    /// If the comparison fails, it is empty, the error is printed on stderr, and `code` is raised.
     std::optional<Comparison> judge(const SessionTask& task, std::int64_t run, int& code) const;
 
     const ExecuteOptions& options_;
@@ -219,7 +223,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
         return std::ranges::all_of(graph.nodes, is_readable) ? done : some_failed;
     }
 
-    std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
+    std::signal(SIGPIPE, SIG_IGN);  // a closed stdout does not end the run
     handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
     Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.gate.repeats);
@@ -298,7 +302,7 @@ int run_workflow(const RunOptions& options) {
     return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
 }
 
-/// The scan with its own files for the further inputs of the plan.
+/// The scan with the files that it declares for the plan's other inputs.
 ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     ScanFile file(scan.file);
     file.unit = scan.unit;
@@ -326,7 +330,7 @@ RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteO
     return request;
 }
 
-/// Every file that the batch names, whether a workflow reads it or not.
+/// All files that the batch names, including those that no workflow reads.
 std::vector<std::filesystem::path> files_of(const Batch& batch) {
     std::vector<std::filesystem::path> files{batch.file};
     for (const BatchScan& scan : batch.scans) {
@@ -354,7 +358,7 @@ int run_batch(const BatchOptions& options) {
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
     SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
-    // A partial run gets a name of its own: the batch's other cells must not count as missing.
+    // A partial run gets its own name, because the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
     if (checked.batch.gate) task.gate = *checked.batch.gate;
     return execution.run(task, true);
@@ -377,8 +381,8 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     add_unit_option(run, "--unit", options.request.unit, "The scans' unit of length");
     add_invalid_option(
         run, options.request.invalid,
-        "Points with a NaN, infinite or too distant coordinate: drop or refuse. Default: the workflow's, "
-        "else drop where the format writes NaN for a ray without a return (PCD, PTX), else refuse");
+        "How to treat points with a NaN, infinite or too distant coordinate: drop or refuse. Default: the workflow's "
+        "rule; without one, drop in formats that write NaN for a ray without a return (PCD, PTX), refuse in others");
     add_list("--set", options.settings, "A workflow parameter's value, NAME=VALUE");
     add_list("--only", options.request.only, "Run only this variant (may be repeated)");
     run.add_option("--until", options.request.until, "Stop after this step");

@@ -17,7 +17,7 @@ namespace scanmill::runner {
 
 namespace {
 
-/// The records of a folder, and what is known of its runs beside them.
+/// The records of a folder, with its acceptances and whether a run goes on in it.
 struct Folder {
     explicit Folder(const std::filesystem::path& folder)
         : records(RunRecords::read(folder / records_file)),
@@ -27,10 +27,10 @@ struct Folder {
     RunRecords records;
     std::vector<Acceptance> acceptances;
     bool is_in_use;
-    std::optional<std::int64_t> running{};  ///< the run that goes on
+    std::optional<std::int64_t> running{};  ///< the run that is still going on
 };
 
-/// A run without an end is the one that goes on, or was killed.
+/// Whether the run was killed: it has no end, and it is not the run that is still going on.
 bool was_killed(const Folder& folder, const RunSummary& run) { return !run.outcome && folder.running != run.id; }
 
 std::string outcome_of(const Folder& folder, const RunSummary& run) {
@@ -62,7 +62,7 @@ void print_document(const Json& members) {
     print_json(json);
 }
 
-/// "baseline, by ann: the new mesher", for each acceptance of the run; empty if there is none.
+/// "baseline, by ann: the new mesher" for each acceptance of the run; empty without acceptances.
 std::string accepted_text(const Folder& folder, const RunSummary& run) {
     std::string text;
     for (const Acceptance& acceptance : folder.acceptances) {
@@ -78,7 +78,8 @@ std::string accepted_text(const Folder& folder, const RunSummary& run) {
 
 using Variants = std::map<std::size_t, std::vector<std::string>>;
 
-/// The variants that use each step, by its node. Cells are recorded when they end, so a killed run may lack some.
+/// The variants that use each step, by the step's node. Cells are recorded when they end, so a killed run may lack
+/// some.
 Variants variants_of(const RunDetails& run) {
     Variants variants;
     for (const CellRecord& cell : run.cells)
@@ -197,7 +198,9 @@ struct Options {
 int runs(const Options& options) {
     Folder folder(options.folder);
     if (options.show.empty()) return list_runs(folder, options.json);
-    if (options.id.empty()) throw Error("which run?").hint("scanmill runs DIR show 3; scanmill runs DIR lists them");
+    if (options.id.empty())
+        throw Error("`show` needs the number of a run")
+            .hint("scanmill runs DIR show 3 shows run 3; scanmill runs DIR lists the runs");
     return show_run(folder, parse_id(options.id), options.json);
 }
 
@@ -209,7 +212,7 @@ void add_runs(CLI::App& app, Action& chosen) {
     command.add_option("DIR", options.folder, "The output folder of the runs")->required();
     command.add_option("show", options.show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
     command.add_option("ID", options.id, "The run's number in the list");
-    command.add_flag("--json", options.json, "Print it as JSON");
+    command.add_flag("--json", options.json, "Print the result as JSON");
 }
 
 }  // namespace scanmill::runner

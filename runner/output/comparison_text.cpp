@@ -33,7 +33,7 @@ std::string reason_text(const ReportTable& reasons) {
     return text;
 }
 
-/// The columns in as many tables as the width needs, each with the scans.
+/// Prints the matrix as several tables if it is wider than the terminal; each table has the column of scans.
 std::string matrix_text(const ReportTable& matrix, std::optional<std::size_t> width) {
     const auto width_of = [&](std::size_t column) {
         std::size_t widest = columns_of(printable_line(matrix.headers[column]));

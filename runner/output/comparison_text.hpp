@@ -10,12 +10,12 @@
 
 namespace scanmill::runner {
 
-/// A screen: the verdict, counts, runs, version, machine, what changed, what failed and why, the matrix of one metric,
-/// and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`: the terminal's;
-/// nothing: any.
+/// Returns about a screen of text: the verdict, counts, runs, version, machine, what changed, what failed and why, the
+/// matrix of one metric, and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`:
+/// columns of the terminal; empty: no limit.
 std::string comparison_text(const Comparison& comparison, const std::string& metric, std::optional<std::size_t> width);
 
-/// The verdict, the counts and the first cells that did not pass, for the end of a batch into this folder.
+/// The verdict, the counts and the first cells that did not pass. It is printed at the end of a batch into this folder.
 std::string verdict_text(const Comparison& comparison, const std::filesystem::path& folder);
 
 }  // namespace scanmill::runner

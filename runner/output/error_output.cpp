@@ -16,7 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 void print_json_line(const Json& json) {
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
+    fmt::print("{}\n",
+               json.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be invalid UTF-8
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ Error with_option(const Error& error) {
             case Remedy::choose_cache_folder: return "on the command line: --cache DIR";
             case Remedy::run_without_workers: return "on the command line: -j 0";
             case Remedy::declare_truth_unit: return "with scanmill measure: --truth-unit mm";
-            case Remedy::move_to_frame: return "the filter apply-transform moves it";
+            case Remedy::move_to_frame: return "the filter apply-transform moves data to another frame";
             case Remedy::mesh_points: return "the filters sculpt and region-grow mesh points";
         }
         return "";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Output of errors and findings: sentences on stderr, and with --json an object on stdout as well, so that
-/// a program that reads the output always gets one.
+/// Output of errors and findings as sentences on stderr. With --json an object is also written to stdout, so that a
+/// program that reads the output always gets one.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace scanmill::runner {
 
-/// The error with the command-line option for its remedy added to the hint.
+/// The error with a hint that also names the command-line option that helps.
 Error with_option(const Error& error);
 
-/// "error: …", the frames and the hint, each on one line: a file's name may contain a line break.
+/// "error: …", the frames and the hint, each on one line. Line breaks in names of files are escaped.
 std::string error_text(const Error& error);
 
-/// The error on stderr; with `json` also `{"scanmill": 1, "error": {"message", "where", "hint"}}` on stdout.
+/// Prints the error on stderr. With `json` also `{"scanmill": 1, "error": {"message", "where", "hint"}}` on stdout.
 void print(const Error& error, bool json);
 
-/// Every diagnostic on stderr, a line each, then how many errors there are.
+/// Prints every diagnostic on one line of stderr, then the number of errors.
 void print(const Diagnostics& diagnostics);
 
 /// `{"file", "ok", "diagnostics": [{"severity", "line", "column", "message"}]}`.
 nlohmann::ordered_json to_json(const Diagnostics& diagnostics);
-/// The same for a file that could not be read at all.
+/// The same for a file that cannot be read.
 nlohmann::ordered_json unreadable_json(const std::string& file, const Error& error);
 
-/// `{"scanmill": 1, "files": […]}` on stdout, of objects as above.
+/// Prints `{"scanmill": 1, "files": […]}` on stdout; `files` are objects of to_json() or unreadable_json().
 void print_files_json(nlohmann::ordered_json files);
 
 }  // namespace scanmill::runner

@@ -17,7 +17,7 @@ namespace scanmill::runner {
 
 namespace {
 
-/// Columns and lines of the terminal.
+/// Columns and lines of the terminal; 80 and 24 if they are unknown.
 std::pair<std::size_t, std::size_t> terminal_size() {
     winsize size{};
     if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {80, 24};
@@ -87,8 +87,9 @@ Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& pre
     expect_tasks(predictions);
 }
 
-/// Steps of one name in one workflow, with whatever parameters, are one kind of task, and so are their outputs. Their
-/// size is that of the file that they are made from.
+/// Adds the tasks whose time is estimated. All steps with the same name in one workflow are one kind of task, whatever
+/// their parameters are; so are all outputs with the same port of such steps. The size of a task is that of the file
+/// from which its value is made.
 void Progress::expect_tasks(const std::vector<NodePrediction>& predictions) {
     std::map<std::string, std::size_t> kinds;
     const auto kind = [&](const RunNode& node, const std::string& output) {
@@ -124,7 +125,7 @@ void Progress::expect_tasks(const std::vector<NodePrediction>& predictions) {
 }
 
 void Progress::node_settled(std::size_t node) {
-    if (is_settled_[node]) return;  // lost values are computed again
+    if (is_settled_[node]) return;  // a step runs again if its value was lost
     is_settled_[node] = true;
     ++ended_;
     board_.step_ended();
@@ -190,7 +191,7 @@ void Progress::node_progress(const RunNode& node, double fraction) {
 
 void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
-    // Warnings of readers begin with the file's path; a file that is an input twice is read twice.
+    // Warnings of readers begin with the file's path. If a file is used for two inputs, it is read twice.
     if (!node.step && !read_.insert(std::string(text)).second) return;
     print("warning: " + printable_line(node.step ? fmt::format("{}: {}", names_.step(node), text) : std::string(text)));
 }
@@ -237,7 +238,7 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     for (const RunOutput& output : cell.outputs)
         if (const std::size_t write = write_of_file_.at(output.file.string()); --cells_left_[write] == 0)
             time_left_.dropped(write);
-    // Variants share steps, and so their doubts.
+    // Variants share steps, and therefore also doubts.
     for (const std::string& doubt : report.doubts) {
         const auto has_doubt = [&](std::size_t node) {
             const auto found = doubts_.find(node);
@@ -255,7 +256,7 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     }
 }
 
-/// The failure of a node that several cells of a scan need is printed once, with these cells.
+/// Prints the failure of a cell. If several cells of a scan need the failed node, it is printed once, with these cells.
 void Progress::print_failure(const RunCell& cell, const CellReport& report) {
     std::vector<std::size_t> cells{graph_.index(cell)};
     bool is_new = true, is_reading = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Progress of a run on stderr: on a terminal one line per worker and one for the whole, rewritten in place; elsewhere
-/// one plain line per finished step. Warnings and failures are always printed.
+/// Progress of a run on stderr. On a terminal there is one line per worker and one for the whole run, rewritten in
+/// place. Elsewhere there is one plain line per finished step. Warnings and failures are always printed.
 
 #include <chrono>
 #include <functional>
@@ -19,25 +19,25 @@
 
 namespace scanmill::runner {
 
-/// The lines on the terminal: one per worker, then one for the whole with an estimate of the time left.
+/// The lines on the terminal: one per worker, then one for the whole run with an estimate of the time left.
 class ProgressBoard {
 public:
-    /// `steps`: all steps, run or taken from the cache.
+    /// `steps`: number of all steps, including those taken from the cache.
     ProgressBoard(std::size_t workers, std::size_t steps) : workers_(workers), steps_(steps) {}
 
-    /// `id` identifies the work for later calls. Times are seconds since the run began.
+    /// A worker starts some work. `id` identifies the work in later calls. Times are seconds since the run began.
     void started(std::size_t worker, const void* id, std::string what, double at) {
-        ended(id);  // another worker may have tried before
+        ended(id);  // another worker may have tried it before
         workers_[worker] = {id, std::move(what), at, 0};
     }
     void progressed(const void* id, double fraction);
     void ended(const void* id);
-    /// Once per step.
+    /// Called once per step.
     void step_ended() { ++ended_; }
     void cell_failed() { ++failed_; }
 
-    /// The progress in at most `width` columns and `height` lines; idle workers are left out first. `left`: estimated
-    /// seconds until the end; empty: unknown.
+    /// Returns the progress in at most `width` columns and `height` lines; idle workers are left out first. `left`:
+    /// estimated seconds until the end; empty if unknown.
     std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000,
                                    std::optional<double> left = {}) const;
 
@@ -69,7 +69,7 @@ public:
     void cell_ended(const RunCell& cell, const CellReport& report) override;
     void pass_started(unsigned pass, unsigned passes) override;
     void time_passed() override;
-    /// Calls `print`, which writes other lines to stderr.
+    /// Clears the terminal's lines and calls `print`, which writes other lines to stderr.
     void print_beside(const std::function<void()>& print);
     /// Clears the terminal's lines.
     void finish();
@@ -87,20 +87,20 @@ private:
     const RunGraph& graph_;
     StepNames names_;
     ProgressBoard board_;
-    TimeLeft time_left_;  ///< its tasks: the nodes, then the outputs
-    std::unordered_map<std::string, std::size_t> write_of_file_;  ///< the output's task
-    std::vector<std::size_t> cells_left_;  ///< by task
-    std::vector<bool> is_settled_;  ///< node: it has ended, or will not run
+    TimeLeft time_left_;  ///< tasks: the nodes, then the outputs
+    std::unordered_map<std::string, std::size_t> write_of_file_;  ///< task of every output file
+    std::vector<std::size_t> cells_left_;  ///< number of unfinished cells that need the task
+    std::vector<bool> is_settled_;  ///< by node: whether it has ended or will not run
     bool quiet_;
     bool terminal_;
     std::size_t ended_ = 0;
-    std::size_t painted_ = 0;  // lines on the terminal
+    std::size_t painted_ = 0;  ///< number of lines on the terminal
     std::chrono::steady_clock::time_point begin_, last_;
     std::optional<double> estimate_;  ///< estimate of the time left
     double estimated_at_ = 0;
-    std::map<std::size_t, std::vector<std::string>> doubts_;  ///< of nodes, as their cells repeat them
+    std::map<std::size_t, std::vector<std::string>> doubts_;  ///< doubts of nodes, as their cells repeat them
     std::set<std::string> printed_doubts_;
-    std::set<std::pair<std::size_t, std::size_t>> printed_failures_;  ///< node and scan
+    std::set<std::pair<std::size_t, std::size_t>> printed_failures_;  ///< node and scan of each failure
     std::mutex mutex_;
     std::set<std::string> read_;  ///< warnings of readers that were printed
 };

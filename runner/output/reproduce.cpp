@@ -13,7 +13,7 @@ namespace scanmill::runner {
 
 namespace {
 
-/// Whether a terminal or a file of text may not hold it as it is.
+/// Whether the text has control characters or invalid UTF-8, which a terminal or a text file cannot contain.
 bool is_unprintable(const std::string& text) {
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t length = character_length(std::string_view(text).substr(at));
@@ -23,10 +23,10 @@ bool is_unprintable(const std::string& text) {
     return false;
 }
 
-/// Options of `run` with a value that decides results.
+/// Options of `run` that take a value and affect results.
 constexpr std::array<std::string_view, 6> deciding{"--in", "--set", "--unit", "--invalid", "--until", "--save"};
 
-/// Those of the recorded command line, each with its value.
+/// The options in `deciding` of the recorded command line, each with its value.
 std::string deciding_options(const std::vector<std::string>& arguments) {
     std::string options;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -39,7 +39,7 @@ std::string deciding_options(const std::vector<std::string>& arguments) {
     return options;
 }
 
-/// The recorded arguments of a run over a list of scans, without its choice of variants and of the output folder.
+/// The recorded arguments of a run over a list of scans, without the options for variants and for the output folder.
 std::string same_arguments(const std::vector<std::string>& arguments) {
     constexpr std::array<std::string_view, 3> dropped{"-o", "--output", "--only"};
     std::string words;
@@ -58,7 +58,8 @@ std::string same_arguments(const std::vector<std::string>& arguments) {
 std::string quoted_word(const std::string& text) {
     if (!is_unprintable(text)) {
         const std::size_t dashes = std::min(text.find_first_not_of('-'), text.size());
-        const std::string word = shell_word(text.substr(dashes));  // which would quote an option
+        const std::string word =
+            shell_word(text.substr(dashes));  // shell_word() alone would quote the dashes of an option
         return word == text.substr(dashes) ? text : shell_word(text);
     }
     std::string word = "$'";
@@ -78,7 +79,7 @@ std::string quoted_word(const std::string& text) {
 
 std::string reproducing_command(const RunDetails& run, const CellRecord& cell, const std::string& scan) {
     const bool is_batch = run.start.arguments.size() > 1 && run.start.arguments[1] == "batch";
-    const bool takes_one_scan = cell.scan != cell.workflow;  // else it takes a list of scans, or none
+    const bool takes_one_scan = cell.scan != cell.workflow;  // otherwise it takes a list of scans or none
     const bool has_several_workflows =
         std::ranges::any_of(run.cells, [&](const CellRecord& other) { return other.workflow != cell.workflow; });
     std::string command = is_batch ? "scanmill batch " : "scanmill run ";

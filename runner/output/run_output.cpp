@@ -23,7 +23,7 @@ std::string shown_path(const std::filesystem::path& file) {
     return relative.starts_with("..") ? file.string() : relative;
 }
 
-/// The numbers worth a column, of one cell, in the order of its steps.
+/// The numbers of a cell that get a column in the report, in the order of its steps.
 Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cell) {
     Metrics shown, read;
     for (const std::size_t index : graph.cells[cell].nodes) {
@@ -32,7 +32,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
         const PlannedStep* step = graph.step(node);
         if (!step) {
             if (!node.is_scan) continue;
-            for (const Metric& property : done.properties.values) {  // the scans of a list are added up
+            for (const Metric& property : done.properties.values) {  // the counts of a list's scans are added up
                 const Metric* before = read.find(property.name);
                 read.set(property.name, property.value + (before ? before->value : 0), property.unit);
                 shown.set(property.name, read.find(property.name)->value, property.unit);
@@ -60,7 +60,7 @@ Json cell_json(const RunGraph& graph, const RunCell& cell) {
             {"variant", graph.variant(cell).name}};
 }
 
-/// The text of the failure with the option that helps.
+/// Adds the option that helps to the text of the failure.
 void add_option(FailureRecord& record, const Failure& failure) {
     if (failure) record.error = with_option(failure.whole()).what();
 }
@@ -77,16 +77,18 @@ CellRecord shown_cell(const RunGraph& graph, const RunCell& cell, const CellRepo
     return record;
 }
 
-/// The file that could not be read, if that is why the cell failed: all cells of its scan that need it fail alike.
+/// The file that could not be read, if the cell failed because of it. All cells of its scan that need the file fail
+/// likewise.
 std::optional<std::size_t> unreadable_file(const RunGraph& graph, const CellReport& report) {
     const bool is_file = report.failed_node && !graph.nodes[*report.failed_node].step;
     return is_file ? report.failed_node : std::nullopt;
 }
 
-/// The first cell of every row, and how many cells share it: those of one scan that failed because of one file.
+/// The first cell of every row, and the number of cells that share the row. Cells of one scan that failed because of
+/// one file share a row.
 std::map<std::size_t, std::size_t> cells_by_row(const RunGraph& graph, const RunReport& report) {
     std::map<std::size_t, std::size_t> rows;
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> row_of;  // by file and scan
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> row_of;  // row by file and scan
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const std::optional<std::size_t> file = unreadable_file(graph, report.cells[cell]);
         const std::size_t row =
@@ -168,7 +170,7 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
     table.may_cut("scan");
     table.may_cut("files");
     std::size_t doubtful = 0, failed = 0;
-    std::set<std::size_t> unreadable;          // nodes
+    std::set<std::size_t> unreadable;          // nodes that read a file
     std::set<std::filesystem::path> moved_to, not_moved;  // variants may share a file
     for (const CellReport& done : report.cells) {
         doubtful += done.outcome == Outcome::doubtful;
@@ -208,11 +210,11 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
     if (failed > 0)
         text += fmt::format("{} of {} failed{}; the reasons are on stderr\n", failed, graph.cells.size(), broken);
     if (!moved_to.empty())
-        text += fmt::format("{} of an earlier run, whose cells failed now, moved to *.previous\n",
-                            count_text(moved_to.size(), "file", "files"));
+        text += fmt::format("{} moved to *.previous, because the cells failed now\n",
+                            count_text(moved_to.size(), "file of an earlier run was", "files of an earlier run were"));
     if (!not_moved.empty())
-        text += fmt::format("{} of an earlier run, whose cells failed now, could not be moved; see stderr\n",
-                            count_text(not_moved.size(), "file", "files"));
+        text += fmt::format("{} could not be moved, although the cells failed now; see stderr\n",
+                            count_text(not_moved.size(), "file of an earlier run", "files of an earlier run"));
     return text;
 }
 

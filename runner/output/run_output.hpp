@@ -19,16 +19,18 @@ namespace scanmill::runner {
 std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 
-/// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files. Cells of
-/// one scan whose file could not be read share a row. `width`: the terminal's; empty: any.
+/// A table with one row per cell: points read, the filters' headline metrics, properties of the written mesh, seconds,
+/// files. Cells of one scan share a row if a file of the scan could not be read. `width`: columns of the terminal;
+/// empty: no limit.
 std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width = {});
 Json report_json(const RunGraph& graph, const RunReport& report);
 
-/// Events as JSON on stdout during the run, one object per line.
+/// Prints events as JSON on stdout during the run, one object per line.
 ///
-/// The first is `run-started`, the last `run-ended`; between them `step-started`, `step-progress` (full percents),
-/// `warning`, `step-ended`, `output-written`, `cell-ended`, `pass-started` when costs are measured again, and before
-/// the last, if there is a gate or an accepted run, `verdict`. Each has its time in seconds since the start.
+/// The first event is `run-started`, the last is `run-ended`. Between them come `step-started`, `step-progress` (whole
+/// percents), `warning`, `step-ended`, `output-written` and `cell-ended`. `pass-started` is printed when costs are
+/// measured again. If there is a gate or an accepted run, `verdict` comes before the last event. Each event has its
+/// time in seconds since the start.
 class EventStream : public RunObserver {
 public:
     explicit EventStream(const RunGraph& graph)
@@ -36,11 +38,11 @@ public:
           names_(graph),
           has_several_variants_(has_several_variants(graph)) {}
 
-    /// `run`: its number in the records; 0: not recorded.
+    /// `run`: number of the run in the records; 0 if it is not recorded.
     void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
     void judged(const VerdictEvent& verdict);
     void end(const RunReport& report);
-    /// Some events could not be written.
+    /// Whether some events could not be written.
     bool has_failed() const { return has_failed_; }
 
     void node_started(const RunNode& node, std::size_t worker) override;
@@ -52,7 +54,7 @@ public:
     void pass_started(unsigned pass, unsigned passes) override;
 
 private:
-    /// That use the node; none if all cells have one variant.
+    /// The variants that use the node; empty if all cells have one variant.
     std::vector<std::string> variants_of(const RunNode& node) const;
     StepName name_of_step(const RunNode& node) const;
     void print(const char* name, const Json& members);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Names of steps and cells in messages: by scan and, where there are several, by workflow and variant.
+/// Names of steps and cells for messages. They contain the scan and, if there are several, the workflow and variant.
 
 #include <string>
 #include <vector>
@@ -16,15 +16,15 @@ class StepNames {
 public:
     explicit StepNames(const RunGraph& graph);
 
-    /// The scan's cells that need the node.
+    /// The cells of the scan that need the node.
     std::vector<std::size_t> cells(std::size_t node, std::size_t scan) const;
-    /// The scan of the node's first cell; then, unless all cells of that scan need it, which do: "scan.ply [alpha=2]",
-    /// "scan.ply [2 of 6 variants]", "scan.ply [wang: alpha=2]".
+    /// The node's scan, followed by the cells of this scan that need the node, unless all of them do: "scan.ply
+    /// [alpha=2]", "scan.ply [2 of 6 variants]", "scan.ply [wang: alpha=2]".
     std::string scan(const RunNode& node) const;
-    /// The same with the step's label, as "scan.ply [alpha=2]: sculpt"; "scan.ply: read" for a file.
+    /// scan() with the step's label, such as "scan.ply [alpha=2]: sculpt"; "scan.ply: read" for a file.
     std::string step(const RunNode& node) const;
-    /// Cells of one scan, for a sentence: "variant 'alpha=2'", "all 6 variants", "2 of 6 variants: alpha=2, alpha=3";
-    /// empty: the scan has only one cell. Pre: there is one.
+    /// Cells of one scan as words for a sentence: "variant 'alpha=2'", "all 6 variants", "2 of 6 variants: alpha=2,
+    /// alpha=3". Empty if the scan has only one cell. Pre: `cells` is not empty.
     std::string in_words(const std::vector<std::size_t>& cells) const;
 
 private:

@@ -31,7 +31,7 @@ struct Character {
     std::size_t begin, columns;
 };
 
-/// The characters of UTF-8 text with their columns on a terminal; an invalid byte counts as one.
+/// The characters of UTF-8 text with the columns that they take on a terminal; an invalid byte takes one column.
 std::vector<Character> characters_of(const std::string& text) {
     static const ::locale_t utf8 = ::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
     const ::locale_t before = ::uselocale(utf8);
@@ -85,7 +85,7 @@ std::string cut_middle(const std::string& text, std::size_t width) {
     if (columns_of(text) <= width) return text;
     if (width < 2) return "";
     const std::vector<Character> characters = characters_of(text);
-    // Half of the width before the mark, the rest after it.
+    // Half of the width is before the mark, the rest after it.
     std::size_t head = 0, columns = 0;
     while (columns + characters[head].columns <= (width - 1) / 2) columns += characters[head++].columns;
     return text.substr(0, characters[head].begin) + cut_begin(text.substr(characters[head].begin), width - columns);

@@ -39,7 +39,7 @@ std::optional<TimeLeft::Estimate> TimeLeft::left_of(const Task& task, double now
     // A filter may report 100 % while it still works.
     if (task.fraction > 0 && task.fraction < 1) left = std::max(left, elapsed * (1 - task.fraction) / task.fraction);
     if (left > 0) return Estimate{left, false};
-    return is_known ? std::optional(Estimate{elapsed, true}) : std::nullopt;  // as long again
+    return is_known ? std::optional(Estimate{elapsed, true}) : std::nullopt;  // assumes as much time again
 }
 
 void TimeLeft::pass_started(unsigned pass, double at) {
@@ -76,7 +76,7 @@ std::optional<double> TimeLeft::left_of_tasks(double now) const {
         running += task.state == State::running;
     }
     if (unfinished_groups == 0) return std::nullopt;
-    // An idle worker helps with groups that have not begun, and with those that several workers share already.
+    // An idle worker can take over groups that have not begun, and groups that several workers share already.
     double most = all / static_cast<double>(std::min(workers_, std::max(running, unfinished_groups)));
     for (const Group& group : groups)
         most = std::max(most, group.left / static_cast<double>(std::max<std::size_t>(1, group.running)));

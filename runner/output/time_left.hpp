@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Estimates how long a run still takes from how long its tasks took so far.
+/// Estimates the remaining time of a run from the times that its tasks took so far.
 
 #include <cstddef>
 #include <optional>
@@ -8,27 +8,28 @@
 
 namespace scanmill::runner {
 
-/// Tasks of one kind take time in proportion to their size. Tasks of one group mostly run one after the other, on one
-/// worker, as the steps of one scan do. All times are seconds since the run began.
+/// The time of a task is assumed proportional to its size, with one factor per kind. Tasks of one group mostly run one
+/// after the other, on one worker; an example are the steps of one scan. All times are seconds since the run began.
 class TimeLeft {
 public:
-    /// The tasks run in the first pass. Further passes take as long as the one before.
+    /// The tasks run in the first pass. Every further pass is assumed to take as long as the pass before.
     explicit TimeLeft(std::size_t workers, unsigned passes = 1) : workers_(workers), passes_(passes) {}
 
-    /// Returns the task's number, counted from 0.
+    /// Adds a task; returns its number, counted from 0.
     std::size_t add(std::size_t kind, std::size_t group, double size);
-    /// May be called for a task that has ended, or was not expected to run.
+    /// May also be called for a task that has ended, or that was not expected to run.
     void started(std::size_t task, double at);
     void progressed(std::size_t task, double fraction);
-    /// `is_typical`: it did all of its work; others of its kind take as long.
+    /// `is_typical`: the task did all of its work, so its time is used for the estimate of others of its kind.
     void ended(std::size_t task, double at, bool is_typical);
-    /// The second pass or a later one begins.
+    /// The second pass or a later pass begins.
     void pass_started(unsigned pass, double at);
-    /// It will not run.
+    /// The task will not run.
     void dropped(std::size_t task) { tasks_[task].state = State::done; }
 
-    /// Nothing if it is unknown: none of a task's kind has ended and it reports no progress, or most of the time left
-    /// is that of tasks that run longer than others of their kind. Cost: O(tasks).
+    /// The estimated seconds until the end. Empty if they are unknown for one of two reasons. No task of some kind has
+    /// ended, and a task of this kind reports no progress. Or most of the time left belongs to tasks that already take
+    /// longer than others of their kind. Cost: O(tasks).
     std::optional<double> seconds(double now) const;
 
 private:
@@ -40,7 +41,7 @@ private:
         double since = 0, fraction = 0;
     };
     struct Kind {
-        double seconds = 0, size = 0;  ///< sums over tasks that ended
+        double seconds = 0, size = 0;  ///< sums over the tasks that ended
     };
     struct Estimate {
         double seconds;
@@ -51,7 +52,7 @@ private:
 
     std::size_t workers_, groups_ = 0;
     unsigned passes_, pass_ = 1;
-    double pass_began_ = 0, last_pass_ = 0;  ///< `last_pass_`: seconds of the pass before
+    double pass_began_ = 0, last_pass_ = 0;  ///< `pass_began_`: time; `last_pass_`: duration of the pass before
     std::vector<Task> tasks_;
     std::vector<Kind> kinds_;
 };

@@ -151,7 +151,7 @@ TEST_F(RunsCommand, MissingRunsAndFolders_AreReported) {
     scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
     EXPECT_THAT(scanmill({"runs", "out", "show", "5"}).err, HasSubstr("there is no run 5"));
     EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is not the number of a run"));
-    EXPECT_THAT(scanmill({"runs", "out", "show"}).err, HasSubstr("which run?"));
+    EXPECT_THAT(scanmill({"runs", "out", "show"}).err, HasSubstr("needs the number of a run"));
 }
 
 TEST_F(RunsCommand, RecordsThatCannotBeWritten_DoNotStopTheRun) {
