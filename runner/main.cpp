@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
     if (argc == 2 && argv[1] == std::string_view("worker")) return scanmill::serve_as_worker();
     // If the reader of the output closes it early, the program ends quietly, even if the caller ignores the signal.
     std::signal(SIGPIPE, SIG_DFL);
-    // With this, writing a file beyond the system's size limit fails with an error code and does not end the program.
+    // Ignoring this signal lets a write beyond the system's file size limit fail with an error code. Otherwise it would
+    // end the program.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);

@@ -52,7 +52,7 @@ Attribute normal_attribute(const Column& column) {
     return {"NORMAL", TINYGLTF_COMPONENT_TYPE_FLOAT, 3, false, fill};
 }
 
-/// Bytes of sRGB (IEC 61966-2-1) as linear fractions of 65535.
+/// The linear value of every byte of sRGB (IEC 61966-2-1), from 0 to 65535.
 std::array<std::uint16_t, 256> linear_fractions() {
     std::array<std::uint16_t, 256> table;
     for (std::size_t byte = 0; byte < table.size(); ++byte) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Columns as vertex attributes of glTF. Decides which columns can be written, and with which type.
+/// Columns as vertex attributes of glTF: decides which columns can be written, and with which type.
 
 #include <functional>
 #include <string>

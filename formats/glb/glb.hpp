@@ -8,12 +8,12 @@
 ///
 /// Column `normal` becomes NORMAL, normalised. Column `colour` becomes COLOR_0, 16 bits and linear as glTF requires;
 /// viewers then show the sRGB bytes of the column. Every other column of points or vertices becomes `_NAME`, in upper
-/// case, with '_' for everything but letters and digits. 8 and 16 bits and float keep their type. Wider integers become
-/// float if this changes none of them. Double becomes float, with a warning if this rounds.
+/// case, with '_' for everything but letters and digits. Numbers of 8 and 16 bits and float keep their type. Wider
+/// integers become float if this changes none of them. Double becomes float, with a warning if this rounds.
 ///
-/// Left out, with a warning: numbers that do not fit, lists, more than 4 numbers per row, columns with NaN or infinity,
-/// and all columns of faces and edges. The unit and the frame's name are the node's `extras`. There is one material:
-/// rough, not metallic, visible from both sides.
+/// Some columns are left out, with a warning: columns with numbers that do not fit, with lists, with more than 4
+/// numbers per row, or with NaN or infinity. All columns of faces and edges are left out, too. The unit and the frame's
+/// name are the node's `extras`. There is one material: rough, not metallic, visible from both sides.
 ///
 /// Refused: NaN and infinite positions, meshes without triangles, more than 2^32 bytes.
 /// Source: glTF 2.0 specification, Khronos 2021.

@@ -3,10 +3,10 @@
 /// PCD, the Point Cloud Library's files: ascii, binary and binary_compressed. PCL's own reader reads headers and binary
 /// points.
 ///
-/// Reading: the fields x, y, z, or X, Y, Z, of any numeric type are the positions (doubles stay doubles). normal_x,
-/// normal_y, normal_z (or nx, ny, nz) become the column `normal`. rgb or rgba becomes the column `colour` (3 or 4 ×
-/// uint8, unpacked). Every other field keeps its name, type and count. Padding (`_`) is skipped; in compressed files it
-/// is refused, because PCL misreads it.
+/// Reading: the fields x, y, z, or X, Y, Z, of any numeric type are the positions (doubles stay doubles). The fields
+/// normal_x, normal_y, normal_z (or nx, ny, nz) become the column `normal`. The field rgb or rgba becomes the column
+/// `colour` (3 or 4 × uint8, unpacked). Every other field keeps its name, type and count. Padding (`_`) is skipped; in
+/// compressed files it is refused, because PCL misreads it.
 ///
 /// The points of an organised cloud are kept in file order, NaN points included, with a warning that states its rows
 /// and columns. A VIEWPOINT that is not the identity is not applied, with a warning. With such a VIEWPOINT, or for an

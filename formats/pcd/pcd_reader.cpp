@@ -130,8 +130,8 @@ Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
     return positions;
 }
 
-/// The columns of all other fields, with the names that pcd.hpp states. A field whose name is already that of a column
-/// (packed colours and normals) gets another name, with a warning.
+/// The columns of all other fields, with the names that pcd.hpp states. If a column (packed colours or normals) already
+/// has a field's name, the field gets another name, with a warning.
 ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) {
     ColumnTable table;
     const std::array<std::string_view, 3> axes = axes_of(cloud);
@@ -178,8 +178,8 @@ void read_number(TextCursor& text, const PCLPointField& field, std::uint8_t* to)
 }
 
 /// Reads the rows of an ascii file into `cloud.data`. PCL's own reader would read unreadable numbers as zeros. Throws
-/// Error with the line for a row with too few or too many numbers, for a number that its field's type cannot hold, and
-/// for fewer or more rows than the header declares. Pre: the cloud has the fields and the size of `header`.
+/// Error with the line if a row has too few or too many numbers, or a number that its field's type cannot hold. Throws
+/// Error for fewer or more rows than the header declares. Pre: the cloud has the fields and the size of `header`.
 void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& cloud) {
     TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
     for (u64 row = 0; row < header.points; ++row) {

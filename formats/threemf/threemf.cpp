@@ -28,8 +28,8 @@ double six_volumes(const TriangleMesh& mesh) {
     return sum;
 }
 
-/// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with
-/// finite coordinates.
+/// Throws Error unless the mesh is a closed, oriented manifold with finite coordinates whose triangles face outwards.
+/// The message counts the defects.
 void require_solid(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and 3MF holds solids only");
     require_finite(mesh.positions.span(), "vertices");

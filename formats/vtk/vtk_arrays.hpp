@@ -49,8 +49,8 @@ vtkSmartPointer<vtkCellArray> cells_of(std::span<const u32> vertices, vtkIdType 
 /// The cells { first }, { first + 1 }, … , `count` of them. Such cells make points visible.
 vtkSmartPointer<vtkCellArray> single_points(u32 first, std::size_t count);
 
-/// How a text is written. As numbers it is one uint8 for each byte of its UTF-8, because meshio does not read files
-/// with strings.
+/// The form of a text in the file. `as_numbers` writes one uint8 for each byte of its UTF-8, because meshio does not
+/// read files with strings.
 enum class Text { as_string, as_numbers };
 void add_frame(const Frame& frame, Text text, vtkFieldData& field);
 void add_text(std::string_view name, std::span<const std::string> texts, vtkFieldData& field);

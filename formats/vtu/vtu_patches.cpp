@@ -17,8 +17,8 @@ namespace scanmill::vtk {
 
 namespace {
 
-/// The exponents of the weights in VTK's order: corners, two points on each of the edges 01, 12, 20, 03, 13, 23, and
-/// the middles of the faces 013, 123, 203, 021.
+/// The exponents of the weights in VTK's order. The order is: corners, two points on each of the edges 01, 12, 20, 03,
+/// 13, 23, middles of the faces 013, 123, 203, 021.
 constexpr std::array<std::array<int, 4>, 20> exponents{
     {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 3}, {2, 1, 0, 0}, {1, 2, 0, 0}, {0, 2, 1, 0},
      {0, 1, 2, 0}, {1, 0, 2, 0}, {2, 0, 1, 0}, {2, 0, 0, 1}, {1, 0, 0, 2}, {0, 2, 0, 1}, {0, 1, 0, 2},
@@ -63,7 +63,7 @@ void write_vtu_patches(const Value& value, OutputBuffer& out, const WriteOptions
     data->GetCellData()->AddArray(array_of(patches.triangles.span(), 1, "patch"));
     const std::span combine(reinterpret_cast<const u8*>(patches.combine.data()), tets);
     data->GetCellData()->AddArray(array_of(combine, 1, "combine"));
-    // As signed numbers, no_edge and no_partner are -1.
+    // no_edge and no_partner become -1 as signed numbers.
     const std::span edges(reinterpret_cast<const std::int32_t*>(patches.edges.data()), tets);
     data->GetCellData()->AddArray(array_of(edges, 1, "edge"));
     const std::span partners(reinterpret_cast<const std::int32_t*>(patches.partners.data()), tets);

@@ -196,8 +196,7 @@ void print_setting(const std::string& name, const Values& values) {
     for (const std::string& value : values) fmt::print("{}={}\n", name, value);
 }
 
-/// Prints the settings of a workflow. The values of a workflow's parameter are those of the filter parameters that use
-/// it.
+/// Prints the settings of a workflow. A workflow's parameter has the values of the filter parameters that use it.
 void print_settings(const Workflow& workflow, const FilterLibrary& library) {
     std::map<std::string, std::set<std::string>> values;
     Diagnostics ignored("");

@@ -29,7 +29,7 @@ struct DocsOptions {
     std::filesystem::path folder;
 };
 
-/// Writes the file completely or not at all; makes its folder if it is missing. Throws Error if that fails.
+/// Writes the file completely or not at all; makes the file's folder if it is missing. Throws Error if that fails.
 void write_text(const std::filesystem::path& path, std::string_view text) {
     std::error_code trouble;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);

@@ -55,8 +55,8 @@ volatile std::sig_atomic_t interrupt_requested = 0;
 
 void on_interrupt(int signal) {
     interrupt_requested = 1;
-    // A second signal ends the program at once. SIGHUP is different: a closing terminal sends it twice, directly and
-    // through its shell.
+    // A second signal ends the program at once. A second SIGHUP does not, because a closing terminal sends it twice:
+    // directly and through its shell.
     if (signal != SIGHUP) std::signal(signal, SIG_DFL);
 }
 
@@ -146,7 +146,7 @@ std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn
     }
 }
 
-/// No worker process starts for a dry run.
+/// The settings of the session. For a dry run, no worker process starts.
 SessionSettings settings_for(const ExecuteOptions& options) {
     SessionSettings settings = options.session;
     if (!options.dry_run) settings.worker_command = {"/proc/self/exe", "worker"};

@@ -17,7 +17,7 @@ namespace scanmill::runner {
 
 namespace {
 
-/// The records of a folder, with its acceptances and whether a run goes on in it.
+/// The records of a folder, its acceptances, and whether a run is still going on in it.
 struct Folder {
     explicit Folder(const std::filesystem::path& folder)
         : records(RunRecords::read(folder / records_file)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The comparison of a run with the accepted one, for people.
+/// The comparison of a run with the accepted run, as text for people.
 
 #include <filesystem>
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace scanmill::runner {
 
-/// Returns about a screen of text: the verdict, counts, runs, version, machine, what changed, what failed and why, the
-/// matrix of one metric, and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`:
-/// columns of the terminal; empty: no limit.
+/// Returns about a screen of text. It has the verdict, the counts, the runs, the version, the machine, what changed,
+/// and what failed and why. The matrix of one metric follows, then the commands that reproduce the failed and regressed
+/// cells. Long lists are cut. `width`: columns of the terminal; empty: no limit.
 std::string comparison_text(const Comparison& comparison, const std::string& metric, std::optional<std::size_t> width);
 
 /// The verdict, the counts and the first cells that did not pass. It is printed at the end of a batch into this folder.

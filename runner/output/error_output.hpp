@@ -23,7 +23,7 @@ void print(const Error& error, bool json);
 /// Prints every diagnostic on one line of stderr, then the number of errors.
 void print(const Diagnostics& diagnostics);
 
-/// `{"file", "ok", "diagnostics": [{"severity", "line", "column", "message"}]}`.
+/// The diagnostics as `{"file", "ok", "diagnostics": [{"severity", "line", "column", "message"}]}`.
 nlohmann::ordered_json to_json(const Diagnostics& diagnostics);
 /// The same for a file that cannot be read.
 nlohmann::ordered_json unreadable_json(const std::string& file, const Error& error);

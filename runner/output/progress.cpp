@@ -88,8 +88,8 @@ Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& pre
 }
 
 /// Adds the tasks whose time is estimated. All steps with the same name in one workflow are one kind of task, whatever
-/// their parameters are; so are all outputs with the same port of such steps. The size of a task is that of the file
-/// from which its value is made.
+/// their parameters are. The outputs of one port of such steps are also one kind. The size of a task is the size of the
+/// file from which its value is made.
 void Progress::expect_tasks(const std::vector<NodePrediction>& predictions) {
     std::map<std::string, std::size_t> kinds;
     const auto kind = [&](const RunNode& node, const std::string& output) {

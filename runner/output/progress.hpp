@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Progress of a run on stderr. On a terminal there is one line per worker and one for the whole run, rewritten in
-/// place. Elsewhere there is one plain line per finished step. Warnings and failures are always printed.
+/// Progress of a run on stderr. On a terminal there is one line per worker and one for the whole run; they are
+/// overwritten. Elsewhere there is one plain line per finished step. Warnings and failures are always printed.
 
 #include <chrono>
 #include <functional>

@@ -23,7 +23,7 @@ std::string shown_path(const std::filesystem::path& file) {
     return relative.starts_with("..") ? file.string() : relative;
 }
 
-/// The numbers of a cell that get a column in the report, in the order of its steps.
+/// The metrics of a cell that get a column in the report, in the order of the cell's steps.
 Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cell) {
     Metrics shown, read;
     for (const std::size_t index : graph.cells[cell].nodes) {
@@ -77,8 +77,8 @@ CellRecord shown_cell(const RunGraph& graph, const RunCell& cell, const CellRepo
     return record;
 }
 
-/// The file that could not be read, if the cell failed because of it. All cells of its scan that need the file fail
-/// likewise.
+/// The file that could not be read, if the cell failed because of it. All cells of this scan that need the file fail
+/// for the same reason.
 std::optional<std::size_t> unreadable_file(const RunGraph& graph, const CellReport& report) {
     const bool is_file = report.failed_node && !graph.nodes[*report.failed_node].step;
     return is_file ? report.failed_node : std::nullopt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// Text on stdout and stderr. Names of files, comments in files and keys of workflows may contain any byte. The
-/// functions here prevent that such a byte clears the screen, changes its title or breaks a line in two.
+/// functions here escape bytes that would clear the screen, change its title or break a line in two.
 
 #include <fmt/format.h>
 
@@ -47,8 +47,8 @@ class Table {
 public:
     explicit Table(std::vector<std::string> headers) : rows_{std::move(headers)} {}
     void add(std::vector<std::string> row);
-    /// Allows to cut the cells of this column in the middle if the table is wider than the terminal. Of several such
-    /// columns, the column that was named first is cut first.
+    /// Lets text() cut the cells of this column in the middle if the table is wider than the terminal. If several
+    /// columns may be cut, the one that was named first is cut first.
     void may_cut(const std::string& header);
     /// The text with a trailing newline, without blanks at line ends. `width`: columns of the terminal; empty: no
     /// limit.

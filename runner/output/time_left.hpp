@@ -9,7 +9,7 @@
 namespace scanmill::runner {
 
 /// The time of a task is assumed proportional to its size, with one factor per kind. Tasks of one group mostly run one
-/// after the other, on one worker; an example are the steps of one scan. All times are seconds since the run began.
+/// after the other, on one worker, such as the steps of one scan. All times are seconds since the run began.
 class TimeLeft {
 public:
     /// The tasks run in the first pass. Every further pass is assumed to take as long as the pass before.
@@ -27,9 +27,9 @@ public:
     /// The task will not run.
     void dropped(std::size_t task) { tasks_[task].state = State::done; }
 
-    /// The estimated seconds until the end. Empty if they are unknown for one of two reasons. No task of some kind has
-    /// ended, and a task of this kind reports no progress. Or most of the time left belongs to tasks that already take
-    /// longer than others of their kind. Cost: O(tasks).
+    /// The estimated seconds until the end. Empty if they are unknown. One reason is a task that reports no progress
+    /// while no task of its kind has ended. The other reason is that most of the time left belongs to tasks that
+    /// already take longer than others of their kind. Cost: O(tasks).
     std::optional<double> seconds(double now) const;
 
 private:

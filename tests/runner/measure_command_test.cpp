@@ -108,7 +108,8 @@ TEST_F(MeasureCommand, Parameters_AreThoseOfTheFilter) {
     EXPECT_FALSE(json::parse(with("self-intersections=false").out)["metrics"].contains("self-intersections"));
     for (const auto& [setting, sentence] :
          {std::pair("sample=9", "did you mean 'samples'"), std::pair("samples=few", "samples"),
-          std::pair("samples={sweep: [100, 200]}", "a sweep is allowed in workflows only"), std::pair("gap=100 %", "gap")}) {
+          std::pair("samples={sweep: [100, 200]}", "a sweep is allowed in workflows only"),
+          std::pair("gap=100 %", "gap")}) {
         const ProgramResult refused = with(setting);
         EXPECT_EQ(refused.exit_code, 2) << setting;
         EXPECT_THAT(refused.err + refused.out, HasSubstr(sentence));

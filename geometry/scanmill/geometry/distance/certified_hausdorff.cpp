@@ -24,8 +24,9 @@ constexpr double negligible = 1e-9;
 constexpr std::size_t round_size = 1024;
 /// Parts are cut in the order of seen + weight (upper - seen). To prove the bounds, the weight is 1. To find the
 /// largest distance, the weight is small, because upper bounds of large triangles over many small ones start far too
-/// high. Measured on the pairs of bench/quality/measure.py and on models against their decimations to 1/4, 1/20 and
-/// 1/100: weight 0.1 finds the distance within 1 % after at most 8,900 parts, weight 1 after up to 96,000.
+/// high. The choice was measured on the pairs of bench/quality/measure.py, and on models against their decimations to
+/// 1/4, 1/20 and 1/100. Weight 0.1 finds the distance within 1 % after at most 8,900 parts, weight 1 after up to
+/// 96,000.
 constexpr double weight_to_find = 0.1, weight_to_prove = 1;
 constexpr u64 most_parts_to_find = 15'000;
 
@@ -86,8 +87,8 @@ public:
     }
 
 private:
-    /// The size class of a length. Lengths in one class differ by 3 % at most. This order is sufficient, and faster
-    /// than a heap of millions.
+    /// The size class of a length. Lengths in one class differ by 3 % at most. The order of classes is sufficient. It
+    /// is faster than a heap of millions of parts.
     static int size_class(double length) {
         int exponent = 0;
         const double mantissa = std::frexp(length, &exponent);  // in [1/2, 1)
@@ -173,8 +174,8 @@ Cut bounded_and_cut(TrianglePart part, double enough) {
     return part.upper > enough ? cut(part, enough) : Cut{{part}, 1};
 }
 
-/// Takes at most `most` parts, until all are near enough or the target cannot be reached. Returns the number of parts
-/// taken.
+/// Takes and cuts at most `most` parts. Ends earlier if all parts are near enough, or if the target cannot be reached.
+/// Returns the number of parts taken.
 u64 refine(Search& search, u64 most, Execution& execution) {
     u64 taken = 0;
     while (taken < most && !search.is_hopeless()) {

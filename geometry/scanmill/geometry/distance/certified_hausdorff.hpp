@@ -15,8 +15,8 @@ namespace scanmill {
 /// lower ≤ Hausdorff distance ≤ upper, in the surfaces' unit.
 struct CertifiedHausdorff {
     double lower = 0, upper = 0;
-    /// The largest distance that was computed at a point of either surface. Not below `lower`. It exceeds the Hausdorff
-    /// distance by at most the rounding of positions.
+    /// The largest distance that was computed at a point of either surface. It is not below `lower`. It exceeds the
+    /// Hausdorff distance by at most the rounding of positions.
     double found = 0;
     /// Whether upper - lower is as small as the limits require, or upper is negligible. Otherwise the search ended
     /// because the cuts were used up or `lower` exceeded the limits' bound.
@@ -30,9 +30,10 @@ struct CertifyLimits {
     /// of the diagonal, or at most gap · bound. `gap` is in (0, 1).
     double gap = 0.01;
     u64 most_cuts = 10'000'000;
-    /// A length that the distance should not exceed; at least 0. With a bound, the search continues until also upper ≤
-    /// bound, which proves it. It stops at once when lower > bound, which refutes it. If neither is true for the
-    /// result, the cuts were used up, or the distance and the bound differ by no more than the rounding of positions.
+    /// A length that the distance should not exceed; at least 0. With a bound, the search also needs upper ≤ bound to
+    /// end; the bound is then proved. It ends at once when lower > bound; the bound is then refuted. The result may
+    /// leave the bound undecided for two reasons: the cuts were used up, or the distance and the bound differ by no
+    /// more than the rounding of positions.
     std::optional<double> bound{};
 };
 
@@ -48,20 +49,22 @@ struct CertifiedSurface {
     std::span<const double> sampled_distances{};
 };
 
-/// The largest distance from a point of either surface to the other surface that a short search finds; 0 if it is not
-/// above the rounding of positions. The search is that of certified_hausdorff(), with two differences. It first takes
-/// the parts with the largest distances seen so far, which are initially those at vertices and samples. It ends after
-/// 15,000 parts.
+/// A short search for the largest distance from a point of either surface to the other surface. Returns 0 if that is
+/// not above the rounding of positions. The search works like certified_hausdorff(), with two differences. It first
+/// takes the parts with the largest distances seen so far; at the start these are the distances of vertices and
+/// samples. It ends after 15,000 parts.
 ///
 /// Normally the result is at most `gap` below the Hausdorff distance. On very large meshes of very different triangles
 /// the search may end too early for that. Except for rounding, the result is not above the Hausdorff distance. `gap`:
 /// in (0, 1). Cost: about 0.2 µs per triangle, and 0.1 s for the search.
 double largest_distance(const CertifiedSurface& one, const CertifiedSurface& other, double gap, Execution& execution);
 
-/// Branch and bound over the triangles of both surfaces. The largest distance over a part of a triangle is at most
-///  - the largest of its corners' distances to any one triangle of the other surface, because the distance to a convex
-/// set is convex; the triangles nearest to the centre and to the corners are tried;
-///  - the distance at its centre plus the distance from the centre to its farthest corner.
+/// Branch and bound over the triangles of both surfaces. The largest distance over a part of a triangle is at most the
+/// smaller of two bounds:
+/// - the largest distance of its corners to any one triangle of the other surface, because the distance to a convex set
+///   is convex; the triangles nearest to the centre and to the corners are tried;
+/// - the distance at its centre plus the distance from the centre to its farthest corner.
+///
 /// The largest distance computed at a corner or centre is the lower bound. The parts with the largest upper bounds are
 /// cut, along the edges of the triangle below them. The search ends when all upper bounds are near enough to the lower
 /// bound and not above the limits' bound.

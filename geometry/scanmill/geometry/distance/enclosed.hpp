@@ -9,9 +9,9 @@
 
 namespace scanmill {
 
-/// Returns 1 for every point that the surface encloses, else 0. The surface encloses a point if it winds around it,
-/// outward or inward. So a surface that is inside out encloses the same points, and an inner surface with the opposite
-/// orientation bounds a cavity.
+/// Returns 1 for every point that the surface encloses, else 0. The surface encloses a point if its winding number
+/// around the point is not 0. So a surface that is inside out encloses the same points, and an inner surface with the
+/// opposite orientation bounds a cavity.
 ///
 /// Pre: finite points. Every edge of the surface has as many half-edges in one direction as in the other, as
 /// topology().closed implies. The surface may intersect or touch itself and have degenerate triangles. `tree` contains

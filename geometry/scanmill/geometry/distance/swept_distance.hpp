@@ -14,11 +14,11 @@
 namespace scanmill {
 
 /// Squared distances; 0 if the two have a point in common. Errors are about 1e-14 of the largest distance between two
-/// corners. Between segments that are parallel to within 1e-8, errors are about 1e-8 of it.
+/// corners. Between segments that are parallel to within 1e-8, errors are about 1e-8 of that distance.
 /// Pre: finite coordinates.
-/// Source: Ericson, Real-Time Collision Detection (2005), sections 5.1.9 and 5.1.10. If two segments are nearest at a
-/// pair of points, both points are inside the segments, or one of them is an end. Two triangles that do not meet are
-/// nearest at an edge of one of them.
+/// Source: Ericson, Real-Time Collision Detection (2005), sections 5.1.9 and 5.1.10. The nearest points of two segments
+/// are both inside the segments, or one of them is an end. Two triangles that do not meet are nearest at an edge of one
+/// of them.
 double squared_distance_of_segments(const std::array<Vec3, 2>& one, const std::array<Vec3, 2>& other);
 double squared_distance(const std::array<Vec3, 2>& segment, const std::array<Vec3, 3>& triangle);
 double squared_distance(const std::array<Vec3, 3>& one, const std::array<Vec3, 3>& other);

@@ -14,9 +14,9 @@ namespace {
 
 using exact::Corners;
 
-/// Bounds of the rounding error of a determinant of differences. `rounding`: as a share of the sum of the absolute
-/// values of its terms (Shewchuk 1997, orient3d). `underflow`: what underflow may add for coordinates in the permitted
-/// range.
+/// Bounds of the error of a determinant of differences. `rounding`: the rounding error, as a share of the sum of the
+/// absolute values of the terms (Shewchuk 1997, orient3d). `underflow`: the additional error by underflow, for
+/// coordinates in the permitted range.
 constexpr double epsilon = 0x1p-53;
 constexpr double rounding = (7 + 56 * epsilon) * epsilon, underflow = 0x1p-900;
 
@@ -57,8 +57,8 @@ int common_side(const Plane& plane, const Corners& triangle, std::size_t first) 
     return side;
 }
 
-/// Whether a certain plane through the common first corner separates the triangles. Its normal is the difference of the
-/// mean directions of their edges.
+/// Whether a plane through the common first corner separates the triangles. Only one plane is tried: its normal is the
+/// difference of the mean directions of the triangles' edges.
 bool are_opposite(const Corners& one, const Corners& other) {
     const Vec3& corner = *one[0];
     const auto direction = [&](const Vec3& to) -> Vec3 { return (to - corner) / (to - corner).lpNorm<1>(); };
@@ -102,7 +102,7 @@ Corners corners_of(std::span<const Vec3> positions, const Triangle& triangle) {
     return {&positions[triangle[0]], &positions[triangle[1]], &positions[triangle[2]]};
 }
 
-/// Whether rounded arithmetic finds a plane between the triangles. Then they have at most common corners in common.
+/// Whether rounded arithmetic finds a plane between the triangles. If so, the triangles touch in common corners only.
 bool are_apart(const Corners& one, const Corners& other, std::size_t common) {
     if (common == 0 && !boxes_meet(one, other)) return true;
     if (common == 1 && are_opposite(one, other)) return true;

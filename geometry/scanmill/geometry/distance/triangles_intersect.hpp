@@ -21,12 +21,13 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 /// - overlapping in one plane;
 /// - triangles with a common edge, if one is folded flat onto the other;
 /// - the same three corners twice, in any order.
+///
 /// Collinear triangles intersect nothing. This includes triangles with a repeated index.
 ///
 /// Pre: finite coordinates below 1e40. The order of the triangles and of their corners does not matter.
 /// Cost: about 30 ns if rounded arithmetic finds a plane between the triangles, otherwise some microseconds at most.
 /// Rounded arithmetic finds a plane for nearly all pairs of a mesh that does not intersect itself.
-/// Source: the cases are those of CGAL's Polygon_mesh_processing::self_intersections.
+/// Source: the cases agree with CGAL's Polygon_mesh_processing::self_intersections.
 bool triangles_intersect(std::span<const Vec3> positions, const Triangle& one, const Triangle& other);
 
 }  // namespace scanmill

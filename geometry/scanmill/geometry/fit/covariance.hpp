@@ -13,10 +13,10 @@ struct Scatter {
     /// Unit vector in the direction of least variance, with the sign of with_positive_sign(). For points on a line it
     /// is perpendicular to the line; for equal points it is (0, 0, 1).
     Vec3 normal;
-    /// The product of the two larger principal variances over the square of their sum: 1/4 for a round disc, 0 for a
-    /// line, about (width / length)² for a narrow strip.
+    /// The product of the two larger principal variances, divided by the square of their sum. It is 1/4 for a round
+    /// disc, 0 for a line, and about (width / length)² for a narrow strip.
     double flatness;
-    /// The least principal variance over the sum of the three, 0 to 1/3; 0 for equal points.
+    /// The least principal variance divided by the sum of the three, 0 to 1/3; 0 for equal points.
     double surface_variation;
 };
 

@@ -17,15 +17,16 @@ struct Jet {
     /// Vector from the first point to the polynomial, along the normal of the plane.
     Vec3 offset;
     /// False if the points do not determine the polynomial: there are fewer than 6, or all are near one conic of the
-    /// plane. `normal` and `offset` are then those of the plane that fits the points best.
+    /// plane. `normal` and `offset` then belong to the plane that fits the points best.
     bool is_curved;
-    /// Root mean square (weighted) of the fit's errors, divided by that of the distances to the first point. About 0.5
-    /// for points that fill a ball. 0 unless the polynomial is determined.
+    /// The (weighted) root mean square of the fit's errors, divided by the root mean square of the distances to the
+    /// first point. About 0.5 for points that fill a ball. 0 unless the polynomial is determined.
     double error = 0;
 };
 
-/// Fits the polynomial s = a + b u + c v + d u² + e u v + f v² with the least (weighted) sum of squared errors in s. u
-/// and v span the plane normal to the direction of least variance of `offsets`; s is the height over it.
+/// Fits the polynomial s = a + b u + c v + d u² + e u v + f v² with the least (weighted) sum of squared errors in s.
+/// The coordinates u and v span the plane normal to the direction of least variance of `offsets`; s is the height over
+/// it.
 ///
 /// Pre: at least one offset; the first one is zero (the point itself, which counts as a sample). `weights` is empty or
 /// has a positive weight for each offset. Uses only exactly rounded operations, so the bits do not depend on the

@@ -19,7 +19,7 @@ struct LocalSurfaceParams {
     /// The point that the quadric passes through.
     enum class Origin {
         nearest,  ///< the point itself, where the quadric is tangent to the plane: for neighbours on all sides
-        centroid  ///< the one nearest the centroid of the point and its neighbours; may be inclined to the plane
+        centroid  ///< the point nearest the centroid of the point and its neighbours; the quadric may be inclined
     };
     Origin origin = Origin::centroid;
 };

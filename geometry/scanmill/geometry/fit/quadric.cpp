@@ -100,8 +100,8 @@ PrincipalCurvatures principal_curvatures(const Quadric& quadric) {
         a = along;
         c = across;
     }
-    // The map from the plane to the surface stretches lengths along the gradient by `stretch`. uu, uv and vv are the
-    // entries of the shape operator in orthonormal directions.
+    // The map from the plane to the surface stretches lengths along the gradient by `stretch`. The numbers uu, uv and
+    // vv are the entries of the shape operator in orthonormal directions.
     const double stretch = std::sqrt(1 + squared_slope);
     const double uu = 2 * a / (stretch * stretch * stretch), uv = b / (stretch * stretch), vv = 2 * c / stretch;
     const double mean = (uu + vv) / 2, half = (uu - vv) / 2, spread = std::sqrt(half * half + uv * uv);

@@ -12,7 +12,7 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Sums over the triangles of a component or a group.
+/// Sums of areas and volumes over the triangles of a component or a group.
 struct Sums {
     Vec3 area = Vec3::Zero();    ///< normals times areas
     Vec3 moment = Vec3::Zero();  ///< centroids times areas
@@ -56,7 +56,7 @@ void orient_outwards(Surface& surface, const Components& components, std::span<c
     std::vector<bool> open(components.count, false);
     for (u32 point = 0; point < groups.size(); ++point)
         if (surface.states[point] == PointState::front) open[components.of_point[point]] = true;
-    // The numbers of the groups are followed by those of the components.
+    // The sets contain first the numbers of the groups, then the components.
     DisjointSets sets(groups.size() + components.count);
     const auto node_of = [&](u32 point) { return static_cast<u32>(groups.size()) + components.of_point[point]; };
     for (u32 point = 0; point < groups.size(); ++point)

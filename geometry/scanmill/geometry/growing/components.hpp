@@ -17,9 +17,9 @@ struct Components {
 Components find_components(const Surface& surface);
 
 /// Reverses the triangles of components that face inwards. For a closed component, the sign of its volume decides. The
-/// open components of a group are reversed together: the sign of the volume between them and their centroid decides. If
-/// this volume is below a hundredth of area^(3/2), the summed normal decides: it must be on the side of `up` or,
-/// without `up`, have a positive largest component.
+/// open components of a group are reversed together, by the sign of the volume between them and their centroid. If this
+/// volume is below a hundredth of area^(3/2), their summed normal decides. The sum must be on the side of `up`. Without
+/// `up`, its largest component must be positive.
 ///
 /// `groups`: for each point, the number of a point, or invalid_index. Points whose orientations depend on each other
 /// have equal numbers. A component whose points all have invalid_index is a group of its own. Changes the list of

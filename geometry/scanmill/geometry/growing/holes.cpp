@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// cost of the longest loop.
 constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
 /// Cosine of 172 degrees. The sides of a cone of half angle 12 differ by 156 degrees, and a triangulation over its tip
-/// divides this angle unevenly. The margin of 8 degrees to 180 prevents triangles that coincide by rounding.
+/// divides this angle unevenly. The margin of 8 degrees to 180 degrees prevents that rounding makes triangles coincide.
 constexpr double tip_cosine = -0.9902680687415704;
 /// Least mean cosine between the normals of the triangulation and of the triangles around the loop. The sides of a tip
 /// face the same way as the triangulation that closes it. At a narrow strip along a fold that is open on all sides, the
@@ -35,7 +35,7 @@ constexpr double least_facing = -0.5;
 /// this angle. The limit of 78 degrees lies between such walls and a slit across a fold of 120 degrees.
 constexpr double least_facing_of_long = 0.2;
 /// A loop is long if a corner is farther than this many radii from its centre. A triangulation with all corners around
-/// a hole's centre extends one radius from the centre; noise and folds add less than another one.
+/// a hole's centre extends one radius from the centre; noise and folds add less than another radius.
 constexpr double long_in_radii = 2;
 
 /// Triangles of least total area that keep the limits and intersect none of `near`; empty if none were found.
@@ -134,7 +134,7 @@ struct LoopShape {
     /// Least cosine between the normals of any two triangles around the loop; 1 without `compare`.
     double least_cosine = 1;
 
-    /// `corners` are counter-clockwise as those of the triangles that close the loop (the lid).
+    /// The lid is the set of triangles that would close the loop. `corners` have its counter-clockwise order.
     LoopShape(const Surface& surface, std::span<const u32> corners, bool compare) {
         const auto& p = surface.positions;
         const auto next = [&](std::size_t i) { return corners[i + 1 < corners.size() ? i + 1 : 0]; };
@@ -170,7 +170,7 @@ public:
           dihedral_cosine_(std::max(tip_cosine, elementary::turn_of(limits.largest_dihedral).cosine - 1e-9)),
           execution_(execution) {}
 
-    /// Closes the loop if possible; returns whether it did. `corners` are counter-clockwise as those of the new
+    /// Closes the loop if possible; returns whether it did. `corners` have the counter-clockwise order of the new
     /// triangles.
     bool close(const std::vector<u32>& corners) {
         execution_.check_cancelled();
@@ -239,7 +239,7 @@ bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners
 
 std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const TriangulationLimits& limits) {
-    // The first attempt ignores obstacles, because there are few. If it finds no triangulation, none exists with
+    // The first attempt ignores obstacles, because obstacles are rare. If it finds no triangulation, none exists with
     // obstacles.
     const NearTriangles none;
     std::vector<Triangle> triangles = least_triangulation(surface, none, corners, limits);

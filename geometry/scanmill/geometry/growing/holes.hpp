@@ -24,26 +24,27 @@ struct TriangulationLimits {
 
 inline constexpr double any_dihedral = -2;
 
-/// Whether a triangulation within the limits exists that repeats no edge of the surface. Intersections are ignored.
+/// Whether a triangulation within the limits exists that repeats no edge of the surface. The triangulation may
+/// intersect other triangles.
 bool can_be_triangulated(const Surface& surface, const std::vector<u32>& corners, const TriangulationLimits& limits);
 
-/// Returns the triangles of least total area that close the loop of `corners`. Corners are distinct and
-/// counter-clockwise as the new triangles will be. Empty if no triangulation was found that keeps the limits, repeats
-/// no edge of the surface, and intersects neither the surface nor itself. Ties: the triangulation that joins the first
-/// corners. Parts of the loop are solved first and separately, so a triangulation whose parts are not optimal is not
-/// found.
+/// Returns the triangles of least total area that close the loop of `corners`. Corners are distinct and have the
+/// counter-clockwise order of the new triangles. The result is empty if no triangulation was found that keeps the
+/// limits, repeats no edge of the surface, and intersects neither the surface nor itself. Ties: the triangulation that
+/// joins the first corners. Parts of the loop are solved first and separately, so a triangulation whose parts are not
+/// optimal is not found.
 ///
 /// `near` is working memory. Cost: at most corners³ / 6 triangles. Triangles that would lower the area are tested
 /// against the surface near the loop.
 std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const TriangulationLimits& limits);
 
-/// Closes loops of at most `most_edges` boundary edges with the triangles of least total area. A loop stays open if
-/// every triangulation repeats an edge, intersects other triangles, has a new edge that is not shorter than
-/// `longest_edge`, or folds back on an adjacent triangle by more than 150 degrees. So the boundary of a single triangle
-/// stays open. Where several fans meet in a vertex, a loop continues with the next fan around the vertex. Returns the
-/// number of closed loops. Cost: linear in the triangles, most_edges² per boundary edge, and most_edges³ per loop. Each
-/// loop is solved once, whether or not it can be closed.
+/// Closes loops of at most `most_edges` boundary edges with the triangles of least total area. New triangles must not
+/// repeat an edge, intersect other triangles, or fold back on an adjacent triangle by more than 150 degrees. New edges
+/// must be shorter than `longest_edge`. If there are no such triangles, the loop stays open. So the boundary of a
+/// single triangle stays open. Where several fans meet in a vertex, a loop continues with the next fan around the
+/// vertex. Returns the number of closed loops. Cost: linear in the triangles, most_edges² per boundary edge, and
+/// most_edges³ per loop. Each loop is solved once, whether or not it can be closed.
 std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Execution& execution,
                               double longest_edge = any_length);
 
@@ -59,7 +60,7 @@ struct NarrowHoleLimits {
     double largest_radius;
     /// Loops of at most this many edges are closed whatever their size.
     std::size_t most_edges;
-    /// Limit for loops of more than `most_edges` edges: largest dihedral deviation, in radians, within the
+    /// Largest dihedral deviation, in radians, for loops of more than `most_edges` edges. The limit applies within the
     /// triangulation, between it and the surface, and between any two triangles around the loop. With 172 degrees or
     /// more, tips are closed.
     double largest_dihedral;

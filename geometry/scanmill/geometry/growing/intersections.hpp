@@ -2,8 +2,8 @@
 #pragma once
 /// Whether a new triangle would intersect the surface, in space.
 ///
-/// Growth decides in the tangent plane, which is cheap, and right where the surface is nearly flat. At tips and folds
-/// only a test in space decides.
+/// Growth tests intersections in the tangent plane. That is fast, and correct where the surface is nearly flat. At tips
+/// and folds a test in space is necessary.
 
 #include <algorithm>
 #include <span>
@@ -26,7 +26,7 @@ inline double squared_enclosing_radius(double a, double b, double c, double twic
 class NearTriangles {
 public:
     /// Gathers all triangles that may intersect a triangulation of these corners. Pre: after the first call, triangles
-    /// were only appended to the surface's list; its fans may have lost triangles and got them back.
+    /// were only appended to the surface's list; triangles may have been removed from its fans and added again.
     void gather_around(const Surface& surface, std::span<const u32> corners);
     /// Gathers triangles that may intersect `triangle`: those at its corners, at the nearest neighbours of its corners,
     /// and at the points `near`.
@@ -50,9 +50,8 @@ private:
     /// Adds the triangles at the point whose boxes overlap the region. Each triangle is added once per gathering.
     void gather_at(const Surface& surface, u32 point, const Box& region);
     bool is_visited(u32 point) const { return visited_[point] == gathering_; }
-    /// Adds new triangles of the surface to `large_`. The first call sets the limit such that the largest 64 triangles,
-    /// or one in 1024 if that is more, are large. Cost: linear in all triangles for the first call, then in the new
-    /// ones.
+    /// Adds new triangles of the surface to `large_`. The first call sets the limit: the largest 64 triangles are
+    /// large, or one in 1024 if that is more. Cost: linear in all triangles for the first call, then in the new ones.
     void update_large(const Surface& surface);
 
     std::vector<Boxed> triangles_;

@@ -4,7 +4,7 @@
 ///
 /// Two triangles with a common corner overlap if their sectors at this corner overlap. Any other overlap with a
 /// triangle that continues the boundary begins where the boundary crosses one of its two new edges. Signs are exact for
-/// the coordinates as given, so collinear points, such as those of a grid, are collinear in every test.
+/// the coordinates as given. So points on one line of a grid are collinear in every test.
 
 #include <Eigen/Geometry>
 

@@ -11,7 +11,8 @@ namespace scanmill::growing {
 
 namespace {
 
-/// At a boundary all neighbours lie on one side. This number is small enough that they still belong to the same sheet.
+/// Number of neighbours. At a boundary all neighbours lie on one side; with so few, they still belong to the same
+/// sheet.
 constexpr std::size_t counted_neighbours = 12;
 
 Scatter scatter_at(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point) {

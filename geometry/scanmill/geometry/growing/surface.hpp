@@ -124,7 +124,7 @@ private:
 /// (interior).
 enum class PointState : u8 { unused, front, interior };
 
-/// The limits under which a triangle was formed. 0: the given limits; 1 and above: relaxed limits in order;
+/// The limits under which a triangle was formed. 0: the given limits. 1, 2 …: limits that are relaxed more and more.
 /// closing_pass: the triangle closed a hole.
 using Pass = u8;
 inline constexpr Pass closing_pass = 4;
@@ -142,8 +142,8 @@ struct Surface {
     const DistinctPoints& points;
     const Neighbourhoods& neighbourhoods;
     const Array<Vec3>& positions;
-    /// At points of the surface, the normals are on the side of the triangles' normals. At other points this holds only
-    /// if `oriented`.
+    /// At points of the surface, each normal is on the same side as the triangles' normals. At other points this holds
+    /// only if `oriented`.
     Array<Vec3> normals;
     /// Surface variation, see PointNormals.
     Array<float> variation;
@@ -152,7 +152,7 @@ struct Surface {
     /// For each point, the search radius that follows from the density alone. Triangles that are small compared with it
     /// are as small as the points' spacing requires.
     Array<double> density_radius;
-    /// Whether the signs of the normals are known; a triangle must then agree with them.
+    /// Whether the signs of the normals are known. If so, triangles must agree with them.
     bool oriented;
     /// The power of two above the longest side of the points' box. Exact predicates use a point at this distance along
     /// a unit normal. With a shorter distance, the sum would lose digits of the normal.

@@ -22,13 +22,13 @@ struct LoopShape {
     double length = 0;
     /// Area of the loop projected along the mean normal of its facets; positive if counter-clockwise.
     double area = 0;
-    /// False if the area does not decide between outer boundary and hole. This is so if the loop has no clear
-    /// direction, such as a loop around a cylinder: the mean of the facets' unit normals, weighted by the lengths of
-    /// the half-edges, is shorter than a tenth. It is also so if the area is below a thousandth of the squared length.
+    /// False if the area does not decide between outer boundary and hole. One reason is a mean normal shorter than a
+    /// tenth, as for a loop around a cylinder: the mean of the facets' unit normals, weighted by the lengths of the
+    /// half-edges. The other reason is an area below a thousandth of the squared length.
     bool clear = false;
 };
 
-/// Pre: `normals` are those of facet_normals(). The last bits of the result depend on which half-edge is first.
+/// Pre: `normals` are the result of facet_normals(). The last bits of the result depend on which half-edge is first.
 LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::span<const Vec3> normals);
 
 /// Whether each loop is an outer boundary of its connected component; all other loops are holes. The sign of a clear

@@ -14,16 +14,16 @@ namespace scanmill {
 double spanned_share(const TriangleMesh& mesh, double edges);
 
 /// Among the edges with two triangles, the share with a dihedral deviation above 60 degrees. 0 if there is no such
-/// edge. Cost: O(n). Pre: that of topology().
+/// edge. Cost: O(n). Pre: the mesh is valid input of topology().
 double rough_share(const TriangleMesh& mesh);
 
 /// Returns a sentence for each of these signs that the surface has:
-/// - spanned_share() of seven edges is above a tenth. Surfaces of complete scans reach 0.06 (the merged bunny, across
-///   the holes of its base). The share is 0.11 to 0.6 where a scan lacks a side, or where a few distant points decide
-///   the surface.
-/// - Without the first sign: spanned_share() of four edges is above a thousandth, and the genus is above 0. A handle
-///   may be a bridge over a gap, and a filled tunnel lies in a gap. Among the scans of bench/quality/raw-scans.md,
-///   correct surfaces have no edge of four medians; surfaces of wrong genus have an edge of six or more.
+/// - spanned_share(mesh, 7) is above a tenth. Surfaces of complete scans reach 0.06 (the merged bunny, across the holes
+///   of its base). The share is 0.11 to 0.6 where a scan lacks a side, or where a few distant points decide the
+///   surface.
+/// - If the first sign is absent: spanned_share(mesh, 4) is above a thousandth, and the genus is above 0. A handle may
+///   be a bridge over a gap, and a filled tunnel lies in a gap. Among the scans of bench/quality/raw-scans.md, correct
+///   surfaces have no edge as long as four median edges. Surfaces of wrong genus have an edge of six or more.
 /// - rough_share() is above 0.15, on more than 10,000 edges. With fewer edges, coarse sampling looks the same. Surfaces
 ///   of clean scans reach 0.02, and surfaces of raw overlapping views 0.08. Surfaces crumpled by outliers, or by noise
 ///   as large as the spacing, have 0.18 to 0.3.

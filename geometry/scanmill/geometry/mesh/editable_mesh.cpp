@@ -104,7 +104,7 @@ u32 EditableMesh::flip(u32 half_edge) {
     link(o1, db);
     link(o2, bc);
     link(h0, o0);
-    // The outer half-edges of the two triangles stay on the boundary, or off it, but change their numbers.
+    // The flip gives the four outer half-edges of the two triangles other numbers.
     if (first_[a] == h0 || first_[a] == o1) first_[a] = h2;
     if (first_[b] == o0 || first_[b] == h1) first_[b] = o2;
     if (first_[c] == h2) first_[c] = h1;

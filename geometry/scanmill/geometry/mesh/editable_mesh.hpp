@@ -21,7 +21,7 @@ public:
     static constexpr u32 none = ~u32(0);
 
     /// Pre: every vertex has at most one fan of triangles, open or closed; no triangle has a repeated vertex. Throws
-    /// Error if a precondition is violated, naming the first such vertex or triangle; also throws where
+    /// Error if a precondition is violated, naming the first such vertex or triangle. Throws Error where
     /// half_edges::opposites() does. Cost: linear, 24 bytes per triangle and 4 per vertex, and 24 bytes per triangle
     /// during construction.
     explicit EditableMesh(const TriangleMesh& mesh);
@@ -74,21 +74,22 @@ public:
     /// half-edge keeps its number and becomes (d, c). Returns the row of the neighbour. Pre: can_flip().
     u32 flip(u32 half_edge);
 
-    /// The vertices around a vertex, counter-clockwise: all of a closed fan, or from end to end of an open one.
+    /// The vertices around a vertex, counter-clockwise. The ring of an open fan goes from one end of the fan to the
+    /// other.
     /// Pre: is_used(vertex).
     void ring(u32 vertex, std::vector<u32>& vertices) const;
     /// A triangle of a hole; its corners are positions in the ring.
     using RingTriangle = std::array<u32, 3>;
     /// The link condition for remove(): every edge of the triangulation between vertices that are not neighbours in the
     /// ring is new. At a corner of a tetrahedron, the reverse of the new triangle must not exist either. Cost: linear
-    /// in the valences of the ring. Pre: that of remove(), without can_remove().
+    /// in the valences of the ring. Pre: the triangles are as for remove().
     bool can_remove(u32 vertex, std::span<const RingTriangle> triangulation) const;
     /// Removes the vertex and triangulates the hole. In an open ring, a new boundary edge joins the last vertex to the
     /// first. Appends the rows of the new triangles in the order of `triangulation`. Pre: can_remove(); the triangles
     /// are counter-clockwise and triangulate the polygon of the ring.
     void remove(u32 vertex, std::span<const RingTriangle> triangulation, std::vector<u32>& new_rows);
 
-    /// The triangles that are not empty, by row.
+    /// The triangles of all rows that are not empty, in the order of rows.
     Array<Triangle> compact_triangles() const;
 
 private:

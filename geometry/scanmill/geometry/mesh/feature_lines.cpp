@@ -93,7 +93,7 @@ private:
         for (u32 number = 0; number < vertices_.size(); ++number) number_[vertices_[number]] = number;
     }
 
-    /// Lists every sharp edge at both of its vertices, each time by the half-edge that starts there.
+    /// Lists every sharp edge twice, at each of its vertices with the half-edge that starts at this vertex.
     void find_creases(const std::vector<bool>& sharp) {
         creases_ = Lists<Crease>(vertices_.size(), [&](auto&& add) {
             for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)

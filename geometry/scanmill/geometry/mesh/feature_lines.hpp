@@ -66,11 +66,11 @@ struct FeatureLines {
 /// boundaries, then holes, then creases. Each type is sorted by the first vertex, then by the second. A closed polyline
 /// starts at its lowest corner or, without corners, at its lowest vertex. A closed crease continues to the lower
 /// neighbour. An open polyline starts at its lower end. The bytes do not depend on the number of threads. They do not
-/// depend on the order of the input's vertices and triangles either, unless two vertices of feature lines have equal
-/// positions (then the mesh's order decides).
+/// depend on the order of the input's vertices and triangles either. There is one exception: if two vertices of feature
+/// lines have equal positions, the mesh's order decides.
 ///
-/// Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle. Unless the noise is given as 0, the
-/// cost of noisy_normals.hpp is added.
+/// Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle. The cost of noisy_normals.hpp is
+/// added, unless the given noise is 0.
 /// Source: Wang 2006, chapter 4, for loops, holes and sharp edges; area test and tie rules are our own.
 FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, const Execution& execution);
 

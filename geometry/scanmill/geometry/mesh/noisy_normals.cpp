@@ -57,8 +57,8 @@ struct FromQuadrics {
 };
 
 /// The distance of the first offset from the quadric that fits all offsets best; empty if they do not determine one.
-/// The point pulls the quadric towards itself: only the share 1 - leverage of its variance remains, so the distance is
-/// corrected. The leverage of the middle of a disc of n points is 4 / n.
+/// The first point pulls the quadric towards itself, which leaves only the share 1 - leverage of its variance; the
+/// distance is corrected for this. The leverage of the middle of a disc of n points is 4 / n.
 std::optional<double> distance_from_quadric(std::vector<Vec3> offsets) {
     constexpr std::size_t coefficients = 6;
     if (offsets.size() <= coefficients) return std::nullopt;
@@ -68,8 +68,8 @@ std::optional<double> distance_from_quadric(std::vector<Vec3> offsets) {
     return jet.offset.norm() / std::sqrt(1 - 4 / static_cast<double>(offsets.size()));
 }
 
-/// Unknown unless every ring of neighbours has more vertices than the ring inside it; otherwise the surface ends or
-/// closes.
+/// The distances are unknown unless every ring of neighbours has more vertices than the ring inside it. A ring that
+/// does not grow shows that the surface ends or closes.
 FromQuadrics distances_from_quadrics(const TriangleMesh& mesh, const Lists<>& neighbours, u32 vertex) {
     std::vector<u32> ring{vertex}, inner;  // sorted
     std::vector<Vec3> offsets{Vec3::Zero()};
@@ -127,8 +127,8 @@ double quantile(std::vector<double>& values, double share) {
 
 Matrix product(const Vec3& v) { return v * v.transpose(); }
 
-/// Whether the second largest eigenvalue of a symmetric matrix M is at least `value`, that is, whether at most one
-/// eigenvalue of M - value I is negative. By Sylvester's law, the number of negative eigenvalues is the number of sign
+/// Whether the second largest eigenvalue of a symmetric matrix M is at least `value`. This is equivalent to at most one
+/// negative eigenvalue of M - value I. By Sylvester's law, the number of negative eigenvalues is the number of sign
 /// changes in the sequence of leading minors.
 bool middle_reaches(const Matrix& m, double value) {
     if (m.trace() < 2 * value) return false;
@@ -275,7 +275,7 @@ Matrix scatter_of(const TriangleMesh& mesh, const Triangle& triangle) {
     return scatter;
 }
 
-/// The vertices of the triangles, and those up to two edges away.
+/// The vertices of the triangles, and all vertices up to two edges away from them.
 std::vector<u32> near_vertices(const TriangleMesh& mesh, const Lists<>& neighbours, std::span<const u32> triangles) {
     std::vector<u32> found;
     std::vector<bool> is_found(mesh.positions.size(), false);

@@ -20,7 +20,7 @@ std::vector<bool> declared_sharp_half_edges(const TriangleMesh& mesh, std::span<
 /// than `sharp_angle`, in radians, or if it is one of the mesh's declared sharp edges. Opposite half-edges have equal
 /// values. No boundary edge is sharp.
 ///
-/// Pre: `opposite` is half_edges::opposites(mesh); `normals` are those of facet_normals(). Throws Error where
+/// Pre: `opposite` is half_edges::opposites(mesh); `normals` are the result of facet_normals(). Throws Error where
 /// declared_sharp_half_edges() does. Cost: linear, one bit per half-edge.
 std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,
                                    std::span<const Vec3> normals, double sharp_angle, unsigned threads);

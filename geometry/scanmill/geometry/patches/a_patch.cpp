@@ -12,8 +12,9 @@ namespace scanmill {
 
 namespace {
 
-// Weights of a polynomial of degree d are numbered like PatchWeights. De Casteljau's step: the weight of degree d - 1
-// with exponents e is the sum over m of coordinate m times the weight of degree d with exponents e + unit(m).
+// Weights of a polynomial of degree d are numbered like PatchWeights. De Casteljau's step computes the weight of degree
+// d - 1 with exponents e from four weights of degree d. It is the sum over m of coordinate m times the weight with
+// exponents e + unit(m).
 
 constexpr int number_of(int degree, int i, int j, int k) {
     int number = 0;
@@ -26,7 +27,8 @@ constexpr int number_of(int degree, int i, int j, int k) {
     return -1;
 }
 
-/// For each weight of degree `degree - 1`, the numbers of the four weights of degree `degree` of which it is the sum.
+/// For each weight of degree `degree - 1`, the numbers of the four weights of degree `degree` from which it is
+/// computed.
 template <int degree, int count>
 constexpr std::array<std::array<int, 4>, count> raised() {
     std::array<std::array<int, 4>, count> table{};
@@ -182,7 +184,7 @@ std::vector<double> zeros_of_cubic(const std::array<double, 4>& c) {
     return zeros;
 }
 
-// PatchSurface.
+// ---- PatchSurface
 
 namespace {
 
@@ -404,9 +406,9 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
         const Vec3 aside = to - height * normal;
         const Foot found{x, height < 0 ? -distance : distance};
         if (aside.norm() <= end_of_steps * diagonal) return found;
-        // In the tangent plane the derivative of `aside` is -M with M = I + height * second derivative / gradient. An
-        // eigenvalue of M is almost 0 near a centre of curvature. Beyond this centre it is negative, and x is not the
-        // nearest point.
+        // In the tangent plane the derivative of `aside` is -M. M is I + height * second derivative / length of the
+        // gradient. An eigenvalue of M is almost 0 near a centre of curvature. Beyond this centre it is negative, and x
+        // is not the nearest point.
         const Vec3 u = aside.normalized(), v = normal.cross(u);
         const Eigen::Matrix3d second = cell(here.tet).hessian(x) * (height / length);
         Eigen::Matrix2d slope;

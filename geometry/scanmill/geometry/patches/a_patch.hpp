@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// Evaluates A-patches: cubic polynomials in Bernstein-Bezier form over tetrahedra. PatchCell is one tetrahedron.
-/// PatchSurface is the whole complex. It computes the value, gradient and second derivatives at a point, inside or
-/// outside, the first hit of a ray, and the nearest point of the surface. tests/geometry/patches/a_patch_example.hpp
-/// shows its use.
+/// PatchSurface is the whole complex. At a point it computes the value, the gradient, the second derivatives and
+/// whether the point is inside. It also finds the first hit of a ray and the nearest point of the surface. The file
+/// tests/geometry/patches/a_patch_example.hpp shows its use.
 ///
 /// Beside sharp edges, two rows of the complex share a tetrahedron (PatchComplex::partners). There the function is the
-/// larger or the smaller of the two rows' functions. The row that gives this value is *active*; derivatives are those
-/// of its function.
+/// larger or the smaller of the two rows' functions. The row that gives this value is *active*; its function also gives
+/// the derivatives.
 ///
 /// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. Functions of one tetrahedron cost a
 /// few hundred operations. They use no libm function whose result depends on the processor. All functions are safe from
@@ -66,8 +66,8 @@ std::array<double, 4> patch_along(const PatchWeights& weights, const Barycentric
 /// Empty if the first and the last weight have one sign and are not 0. Pre: at most one zero.
 std::optional<double> zero_of_cubic(const std::array<double, 4>& weights);
 
-/// The share t of the segment at which the segment meets the surface. Empty, and with the precondition, as
-/// zero_of_cubic().
+/// The share t at which the segment between two points meets the surface. It is zero_of_cubic() of patch_along(), so
+/// the same preconditions apply.
 std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
 
 /// The zeros t in [0, 1] of any cubic, ascending, accurate to about 1e-15. For the cubic that is 0 everywhere: only t =
@@ -93,8 +93,8 @@ public:
     /// tetrahedron.
     explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
 
-    /// The tetrahedron that contains the point. If several do, the first row; of two partners, the active row. Cost:
-    /// O(log n).
+    /// The tetrahedron that contains the point. If several contain it, the first row is returned; of two partners, the
+    /// active row. Cost: O(log n).
     std::optional<u32> locate(const Vec3& point) const;
     PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
 

@@ -14,7 +14,7 @@ namespace {
 /// such branches cannot be predicted.
 using Pair = double __attribute__((vector_size(16)));
 
-/// Unevaluated sums of two doubles: about 32 digits.
+/// Sums of two doubles that are not added up; they have about 32 digits.
 struct DoubleDouble {
     Pair value, rest;
 };
@@ -58,10 +58,10 @@ constexpr std::array<Constant, 9> arctan_of_eighths{{{0.0, 0.0},
                                                      {0.7188299996216245, -2.1478388444456983e-17},
                                                      {0.7853981633974483, 3.061616997868383e-17}}};
 
-/// Computes arctan(low / high) = arctan q + arctan r. q is the multiple of 1/8 nearest to low / high, and r = (low - q
-/// high) / (high + q low), so |r| ≤ 1/16. The Taylor series of arctan r ends before r^15 / 15, which is below 2^-59 r.
-/// The terms from r^3 on are below r / 768, so plain doubles are accurate enough for them. Pre: 0 ≤ low ≤ high, high >
-/// 0.
+/// Computes arctan(low / high) = arctan q + arctan r. Here q is the multiple of 1/8 nearest to low / high, and r = (low
+/// - q high) / (high + q low). So |r| ≤ 1/16. The Taylor series of arctan r ends before r^15 / 15, which is below 2^-59
+/// r. The terms from r^3 on are below r / 768, so plain doubles are accurate enough for them. Pre: 0 ≤ low ≤ high, high
+/// > 0.
 DoubleDouble arctan(Pair low, Pair high) {
     const Pair zero{}, one = zero + 1;
     Pair eighths = zero;

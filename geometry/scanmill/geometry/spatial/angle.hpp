@@ -12,11 +12,12 @@
 
 namespace scanmill {
 
-/// The angle of the direction (cosine, sine), in radians, in [0, π]; 0 if both are 0. They need not have unit length.
+/// The angle of the direction (cosine, sine), in radians, in [0, π]; 0 if both are 0. The direction need not have unit
+/// length.
 ///
 /// Pre:   sine ≥ 0.
 /// Error: at most 0.52 units in the last place; about one result in 10,000 is not the nearest double. Multiples of 45°
-///        are the nearest doubles.
+/// are the nearest doubles.
 double angle_of(double cosine, double sine);
 
 /// The angle between two vectors, in radians, in [0, π]; 0 if one of them is zero. Angles near 0 and π keep their

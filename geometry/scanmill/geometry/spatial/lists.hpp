@@ -14,7 +14,7 @@ class Lists {
 public:
     Lists() = default;
     /// `each(add)` calls add(list, element) for every element; `list` is below `count`. `each` is called twice and must
-    /// report the same elements in the same order. Elements of one list keep that order. Cost: linear.
+    /// report the same elements in the same order. The elements of each list keep this order. Cost: linear.
     template <class Each>
     Lists(std::size_t count, const Each& each) : begin_(count + 1, 0) {
         each([&](std::size_t list, const Element&) { ++begin_[list + 1]; });

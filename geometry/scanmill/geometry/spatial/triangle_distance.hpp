@@ -19,7 +19,7 @@ namespace scanmill {
 /// three edges and of the face, in coordinates along the longest edge and perpendicular to it.
 Vec3 nearest_on_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// The point of segment a b nearest to `point`. Pre and post are those of nearest_on_triangle().
+/// The point of segment a b nearest to `point`. Pre and post: as for nearest_on_triangle().
 Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b);
 
 }  // namespace scanmill

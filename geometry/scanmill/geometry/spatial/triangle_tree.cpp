@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t largest_leaf = 4;
 /// Widening of boxes, as a share of the scaled extent. It is far above the rounding error of a distance in doubles and
-/// far below that of a float.
+/// far below the rounding error of a float.
 constexpr double widening = 0x1p-40;
 
 /// A float below `value`, also if `value` is a float.
@@ -165,7 +165,7 @@ struct FloatPoint {
             high[axis] = all(rounded_up(moved));
         }
     }
-    /// Lower bounds of the squared distances to four boxes, apart from a few roundings.
+    /// Lower bounds of the squared distances to four boxes, apart from a few rounding errors.
     Float4 squared_distances(const float (&bounds)[6][4]) const {
         Float4 sum = all(0);
         for (int axis = 0; axis < 3; ++axis) {

@@ -4,8 +4,8 @@
 ///
 /// Every node has four children, each with a quarter of its triangles (two splits at the median of the longest axis).
 /// So the tree is complete and needs no pointers. Boxes are floats, rounded outwards and widened by more than the
-/// rounding error of a distance in doubles. Distances to triangles are doubles. Results therefore equal those of a
-/// search over all triangles, bit for bit.
+/// rounding error of a distance in doubles. Distances to triangles are doubles. A search over all triangles would
+/// therefore give the same results, bit for bit.
 ///
 /// Any set of triangles is allowed; degenerate triangles are segments or points. tree_of_points() treats every point as
 /// a triangle with three equal corners.
@@ -62,9 +62,9 @@ public:
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
 
     /// Calls accept(slot) for all triangles whose bounding boxes come within `distance` of the convex hull of one to
-    /// three points, and for a few more, in no particular order. Stops when `accept` returns true; returns whether it
-    /// did. Safe from several threads. Pre: finite points, distance ≥ 0. Cost: O(log n) and the triangles near the
-    /// hull.
+    /// three points. It may also be called for a few other triangles. The order is not defined. Stops when `accept`
+    /// returns true; returns whether it did. Safe from several threads. Pre: finite points, distance ≥ 0. Cost: O(log
+    /// n) and the triangles near the hull.
     bool any_near(std::span<const Vec3> hull, double distance, const std::function<bool(u32 slot)>& accept) const;
 
 private:

@@ -27,7 +27,7 @@ public:
         cell_ = next();
         const Tetrahedron& corners = tets_.cells[cell_];
         across_ = corners[0] == kept_ ? 0 : corners[1] == kept_ ? 1 : corners[2] == kept_ ? 2 : 3;
-        // The exclusive or of all four corners and of three of them is the fourth corner.
+        // The exclusive or of four corners, combined with that of three of them, gives the fourth corner.
         kept_ = sum(cell_) ^ others_ ^ kept_;
     }
 

@@ -10,7 +10,7 @@
 
 namespace scanmill {
 
-/// The vertices in no cell, ascending. These points are hidden by the weights of other points. Cost: linear.
+/// The vertices in no cell, ascending. The weights of other points hide these vertices. Cost: linear.
 Array<u32> hidden_vertices(const TetMesh& tets);
 
 /// The facets between cells labelled 1 and other cells or the outside, oriented outwards, as vertices of `tets`; sorted

@@ -51,7 +51,7 @@ std::size_t VertexStars::surplus_parts(u32 vertex, std::span<const u8> labels) {
             if (across == none ? is_inside : (labels[across] == 1) != is_inside) continue;
             u32 a = root(i), b = root(across == none ? beyond : static_cast<u32>(slots_[across] - base_));
             if (a == b) continue;
-            // A part is represented by the outside of the hull if it contains it, else by its lowest cell.
+            // The representative of a part is the outside of the hull, if the part contains it, else its lowest cell.
             if (a == beyond || (b != beyond && star_[a] < star_[b])) std::swap(a, b);
             parents_[a] = b;
             --(is_inside ? inside : outside);

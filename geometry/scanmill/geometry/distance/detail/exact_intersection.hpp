@@ -16,9 +16,9 @@ bool collinear(const Corners& triangle);
 /// triangles_intersect() for triangles whose first `common` corners are the same. Pre: no triangle is collinear.
 bool triangles_intersect(const Corners& one, const Corners& other, std::size_t common);
 
-/// How the triangle crosses the ray from `point` along the axis (0, 1 or 2), in positive direction if `is_upward`, else
-/// in negative direction. 0 if it does not cross the ray. Otherwise +1 if the triangle is counter-clockwise seen from
-/// the positive end of the axis, -1 if clockwise.
+/// The signed crossing of the triangle with the ray from `point` along the axis (0, 1 or 2). The ray has the positive
+/// direction if `is_upward`, else the negative one. The result is 0 if the triangle does not cross the ray. Otherwise
+/// it is +1 if the triangle is counter-clockwise seen from the positive end of the axis, -1 if it is clockwise.
 ///
 /// The ray is moved sideways by an infinitesimal amount, the same for all triangles, so it meets no edge and no corner.
 /// The sum over a closed surface is the surface's winding number around the point, times -1 for downward rays. Pre: the

@@ -54,7 +54,8 @@ double overhang(const PlaneDistances& distances) {
     return std::min(std::ranges::max(distances), -std::ranges::min(distances));
 }
 
-/// Of the planes through edges of the triangle below, the plane that the part crosses farthest: distances to it.
+/// Distances of the corners to one of the planes through edges of the triangle below: the plane that the part crosses
+/// farthest.
 PlaneDistances farthest_crossed(const TrianglePart& part) {
     const std::array<Vec3, 3> below = part.other->corners(part.below);
     const Vec3 normal = (below[1] - below[0]).cross(below[2] - below[0]);
