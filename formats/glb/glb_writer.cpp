@@ -193,7 +193,8 @@ bool is_see_through(const ColumnTable& columns) {
     return false;
 }
 
-/// The model of points, or of a mesh before its triangles are added. Throws Error if the data do not fit.
+/// The model of points, or of a mesh before its triangles are added. Throws Error if the data do not fit or have
+/// positions that are not finite.
 GlbModel model_of(const Frame& frame, std::span<const Vec3> positions, const ColumnTable& columns,
                   std::string_view kind, std::size_t triangles, const WriteOptions& options) {
     constexpr std::size_t size_of_position = 3 * sizeof(float), size_of_triangle = 3 * sizeof(u32);

@@ -33,7 +33,7 @@ LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::s
 
 /// Whether each loop is an outer boundary of its connected component; all other loops are holes. The sign of a clear
 /// area decides. A loop without a clear area is outer if it is the longest loop of its component. Among equally long
-/// loops (relative tolerance 1e-9) the first is the longest.
+/// loops (relative tolerance 1e-9) the first counts as the longest.
 ///
 /// Pre: `loops` are all loops of the mesh; `shapes` are their shapes. Cost: linear in the loops; linear in the
 /// triangles if a shape is not clear.

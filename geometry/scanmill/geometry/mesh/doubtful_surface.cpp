@@ -79,7 +79,7 @@ std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double n
             doubts.push_back(fmt::format(
                 "the surface has genus {} and spans gaps between the points: {:.2g} % of its area is in triangles with "
                 "an edge longer than {} median edges; the surface may join parts that are separate in the object, or "
-                "fill its tunnels: scan the missing part, or compare the surface with the object",
+                "fill the object's tunnels: scan the missing part, or compare the surface with the object",
                 genus, 100 * beside, long_edge_of_handle));
     if (3 * mesh.triangles.size() / 2 <= few_edges) return doubts;
     if (const double share = rough_share(mesh); share > doubtful_rough)

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int bits_per_axis = 21;  // three coordinates make a key of 63 bits
 constexpr double middle = 1 << (bits_per_axis - 1), most_cells_per_axis = middle - 4;
-// Larger than the relative rounding error of a coordinate in units of cells.
+// Exceeds 1 by more than the rounding error of a coordinate in units of cells.
 constexpr double slack = 1 + 0x1p-20;
 
 u64 key(u64 x, u64 y, u64 z) { return (((z << bits_per_axis) + y) << bits_per_axis) + x; }

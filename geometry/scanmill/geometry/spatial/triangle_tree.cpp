@@ -179,8 +179,8 @@ struct FloatPoint {
     Float4 low[3], high[3];
 };
 
-/// The largest bound that squared_distances() can give for a box that contains a triangle at distance² `squared`. The
-/// added terms exceed all roundings together.
+/// An upper bound of what squared_distances() gives for a box that contains a triangle at squared distance `squared`.
+/// The added terms exceed all roundings together.
 float reach(double squared, double scale) {
     return static_cast<float>(std::min(squared * (scale * scale) * (1 + 0x1p-18), 1e38)) + 1e-36f;
 }
