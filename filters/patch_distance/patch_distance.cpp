@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t chunk = 1024;
 constexpr const char* column_name = "distance-to-patches";
-constexpr u32 subdivision = 2;  // subdivision of the mesh on which the search begins
-constexpr double farthest = 0.1;  // share of the diagonal
+constexpr u32 subdivision = 2;  // segments per edge of the tessellation that gives the start points
+constexpr double farthest = 0.1;  // as a share of the surface's diagonal
 constexpr double rounding = 1e-12;
 
 /// The vertices and edges at which the surface ends.
@@ -39,7 +39,7 @@ public:
 
     bool is_empty() const { return std::ranges::find(has_vertex_, true) == has_vertex_.end(); }
 
-    /// Whether it contains a point of a triangle.
+    /// Whether `point`, which lies on `triangle`, is within `rounded` of the boundary.
     bool contains(u32 triangle, const Vec3& point, double rounded) const {
         for (u32 half = 3 * triangle; half < 3 * triangle + 3; ++half) {
             const u32 a = half_edges::start(mesh_, half), b = half_edges::end(mesh_, half);
@@ -71,7 +71,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     const Boundary boundary(mesh);
     const bool is_closed = boundary.is_empty();
     const double limit = farthest * surface_box(mesh).diagonal();
-    // A ray decides nothing about an open surface.
+    // A ray test needs a closed surface. On an open surface, the side of the nearest triangle decides.
     const auto is_inside = [&](const Vec3& point, const Vec3& nearest, u32 triangle) {
         if (is_closed) return surface.is_inside(point);
         return (point - nearest).dot(area_vector(mesh.positions, mesh.triangles[triangle])) < 0;
@@ -88,7 +88,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
             if (nearest.squared_distance > limit * limit) continue;
             const Vec3 start = tree.nearest_point(p, hint);
             if (const auto foot = surface.foot(p, start)) distances[i] = foot->distance;
-            // At corners of creases, and between faces without tetrahedra between them.
+            // There is no foot at corners of creases, and between faces that have no tetrahedra between them.
             else if (!boundary.contains(nearest.triangle, start, rounding * limit))
                 distances[i] = (is_inside(p, start, nearest.triangle) ? -1 : 1) * (p - start).norm();
         }
@@ -114,8 +114,9 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     add_column(result.points.columns,
                Column(column_name, 1, Buffer<double>(std::move(distances))).with_length_exponent(1), context);
     if (result.unlocated > 0)
-        context.warn(fmt::format("{} of {} points {} no distance: farther than {:.3g} away, or nearest to the boundary",
-                                 result.unlocated, points.size(), by_count(result.unlocated, "has", "have"), limit));
+        context.warn(fmt::format(
+            "{} of {} points {} no distance: more than {:.3g} u from the surface, or nearest to its boundary",
+            result.unlocated, points.size(), by_count(result.unlocated, "has", "have"), limit));
     context.metric("rms", result.rms, Unit::length);
     context.metric("p95", result.p95, Unit::length);
     context.metric("max", result.max, Unit::length);

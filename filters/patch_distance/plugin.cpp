@@ -15,13 +15,15 @@ SCANMILL_FILTER() {
         .summary("Signed distance of points to the surface of A-patches.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
-            "Equally near parts of the surface: the one whose triangle in the tessellation is nearer, or has the "
-            "lower row.")
-        .not_finite("Refused, with their number and the first of them.")
+            "If parts of the surface are equally near, the part with the nearer triangle of the tessellation counts. "
+            "If these triangles are equally near, the one with the lower row counts.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"distance-to-patches"})
         .in<PatchComplex>("patches", "The surface.")
         .in<PointCloud>("points", "The points to measure.")
-        .out<PointCloud>("points", "All points with `distance-to-patches`: positive outside; NaN where there is none.")
+        .out<PointCloud>("points",
+                         "All points, with the column `distance-to-patches`: positive outside, negative inside, NaN "
+                         "for points without a distance.")
         .metric("rms", Unit::length, "Root of the mean squared distance.", headline, smaller_is_better)
         .metric("p95", Unit::length, "95 % quantile of the distances without sign.", smaller_is_better)
         .metric("max", Unit::length, "Largest distance without sign.", headline, smaller_is_better)
