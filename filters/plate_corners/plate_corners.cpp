@@ -24,10 +24,10 @@ namespace {
 using plate::Rectangle;
 using plate::Vec2;
 
-/// A plane with a tenth of the points is missed once in 20,000 runs: (1 - 0.1³)^10000.
+/// Probability that all trials miss a plane with a tenth of the points: (1 - 0.1³)^10000, about 1 in 20,000.
 constexpr std::size_t plane_trials = 10000, plane_sample = 1000;
 constexpr double least_share = 0.1;
-/// Planes that are tried.
+/// Number of planes to try before the search fails.
 constexpr int most_planes = 3;
 
 struct Plane {
@@ -44,7 +44,8 @@ std::vector<u32> rows_near(const Plane& plane, std::span<const Vec3> positions, 
     return near;
 }
 
-/// Tries planes through three sampled points; ties: the first. Empty if all samples are collinear.
+/// Among planes through three sampled points, returns the one with the most sampled points within `tolerance`; ties:
+/// the first. Empty if the three points of every trial are collinear.
 std::optional<Plane> sampled_plane(std::span<const Vec3> positions, std::span<const u32> rows, double tolerance,
                                    Random random, Context& context) {
     std::vector<Vec3> sample;
@@ -75,7 +76,7 @@ struct FlatPoints {
     std::vector<u32> rows;
 };
 
-/// Least squares on the points near the plane, until they stay the same.
+/// Fits the plane to the points near it by least squares, until the set of these points stays the same.
 FlatPoints fitted(Plane plane, std::span<const Vec3> positions, std::span<const u32> rows, double tolerance) {
     constexpr int most_rounds = 20;
     std::vector<u32> near = rows_near(plane, positions, rows, tolerance);
@@ -98,13 +99,14 @@ FlatPoints largest_plane(std::span<const Vec3> positions, std::span<const u32> r
     if (start) found = fitted(*start, positions, rows, tolerance);
     const auto least = static_cast<std::size_t>(std::ceil(least_share * static_cast<double>(positions.size())));
     if (found.rows.size() < std::max<std::size_t>(least, 4))
-        throw Error("no plane: the best one has {} of {} within {:.4g} u; at least {} are needed", found.rows.size(),
-                    count_text(positions.size(), "point", "points"), tolerance, std::max<std::size_t>(least, 4))
+        throw Error("no plane: the best one has {} of {} within {:.4g} u of it; at least {} are needed",
+                    found.rows.size(), count_text(positions.size(), "point", "points"), tolerance,
+                    std::max<std::size_t>(least, 4))
             .hint("crop the scan to the plate, or give a larger `tolerance`");
     return found;
 }
 
-/// Axes of a plane, right-handed with its normal.
+/// Orthonormal axes in a plane; x, y and the plane's normal are right-handed.
 struct Axes {
     Vec3 origin, x, y;
 
@@ -116,7 +118,7 @@ struct Axes {
     Vec3 space(const Vec2& p) const { return origin + p.x() * x + p.y() * y; }
 };
 
-// Refusals, and the upper side.
+// Checks of the parameters, and choice of the upper side.
 
 double square(double x) { return x * x; }
 
@@ -131,12 +133,12 @@ std::optional<std::array<double, 2>> sides_of(const PlateCornersParams& params) 
     if (!params.sides) return {};
     if (params.sides->size() != 2)
         throw Error("`sides` has {}; it needs 2", count_text(params.sides->size(), "length", "lengths"))
-            .hint("give both sides of the rectangle, as [200 mm, 120 mm]");
+            .hint("give both sides of the rectangle, for example [200 mm, 120 mm]");
     return std::array{positive((*params.sides)[0], "a length of `sides`"),
                       positive((*params.sides)[1], "a length of `sides`")};
 }
 
-/// Unit mean of the normals at the rows; zero without a column of normals.
+/// Mean of the finite normals at the rows, as a unit vector. Zero if there are none or they cancel out.
 Vec3 mean_normal(const PointCloud& cloud, std::span<const u32> rows) {
     const Column* column = cloud.columns.find("normal");
     Vec3 sum = Vec3::Zero();
@@ -148,7 +150,8 @@ Vec3 mean_normal(const PointCloud& cloud, std::span<const u32> rows) {
     return sum.norm() > 0 ? sum.normalized() : sum;
 }
 
-/// The plane with its normal on the upper side.
+/// Turns the normal of the plane to its upper side. The normals of the points decide which side that is. Without them,
+/// the direction `given` decides.
 Plane with_upper_side(Plane plane, const PointCloud& cloud, std::span<const u32> rows, const Vec3& given) {
     const Vec3 by_normals = mean_normal(cloud, rows);
     const bool has_normals = by_normals != Vec3::Zero();
@@ -156,10 +159,10 @@ Plane with_upper_side(Plane plane, const PointCloud& cloud, std::span<const u32>
     constexpr double least = 0.5;
     if (!(std::abs(cosine) >= least)) {
         const double angle = angle_between(plane.normal, has_normals ? by_normals : given);
-        throw Error("{} is {:.3g} deg off the normal of the plate; at most 60 deg decide which side is up",
+        throw Error("{} is {:.3g} deg off the normal of the plate; the upper side is undecided above 60 deg",
                     has_normals ? "the mean normal of the plate's points" : "`up`",
                     std::min(angle, std::numbers::pi - angle) * 180 / std::numbers::pi)
-            .hint("give `up`, a direction that points away from the plate's upper side");
+            .hint("give `up`, the direction in which the plate's upper side faces");
     }
     if (cosine < 0) plane.normal = -plane.normal;
     return plane;

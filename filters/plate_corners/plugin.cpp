@@ -9,15 +9,18 @@ SCANMILL_FILTER() {
     return Declare<P>("plate-corners", 2)
         .summary("Finds the four corners of a rectangular plate in a scan.")
         .source("Wang 2006, chapter 5; Fischler and Bolles 1981")
-        .ties("Equally good planes and lines: the first in the order of the random samples.")
-        .not_finite("Refused, with their number and the first of them.")
+        .ties("Among equally good planes or lines, the first in the order of the random samples counts.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"normal"})
         .in<PointCloud>("points", "A scan of the plate; a part may stand on it.")
-        .out<PointCloud>("points", "The corners, counter-clockwise seen from above, with `normal` of the upper side.")
-        .param("sides", &P::sides, "The two known lengths of the sides; corners then form a rectangle of this size.",
-               size(2), above(0))
+        .out<PointCloud>("points",
+                         "The four corners, counter-clockwise seen from above, with the column `normal`: the normal of "
+                         "the upper side.")
+        .param("sides", &P::sides,
+               "The two known side lengths of the plate. If given, the corners form a rectangle of this size.", size(2),
+               above(0))
         .param("tolerance", &P::tolerance, "The largest distance of the plate's points from its plane.", above(0))
-        .param("up", &P::up, "A direction away from the plate's upper side; used if the points have no normals.",
+        .param("up", &P::up, "Direction in which the plate's upper side faces; used if the points have no normals.",
                size(3))
         .metric("residual", Unit::length, "Distance of the points at the border from the sides, root mean square.",
                 headline, smaller_is_better)

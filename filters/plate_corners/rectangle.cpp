@@ -21,11 +21,13 @@ namespace scanmill::plate {
 
 namespace {
 
-/// Least share of the plane's points in a group that belongs to the plate.
+/// A group of points belongs to the plate if it holds at least this share of the plane's points.
 constexpr double least_group = 0.02;
 /// Share of a side's length, at either end, that is ignored because corners are rounded or chamfered.
 constexpr double end_share = 0.1;
-/// A line with half of the strips is missed once in 10^62 runs.
+/// The trials miss a line through half of the strips with a probability of at most about 10^-14. That is the worst
+/// case, in which these strips are neighbours: about one trial in 16 then finds two points on the line far enough
+/// apart.
 constexpr std::size_t line_trials = 500;
 constexpr double least_strips = 0.5;
 constexpr double largest_skew_cosine = 0.0871557427476582;  // cosine of 85 degrees
@@ -33,10 +35,10 @@ constexpr double largest_skew_cosine = 0.0871557427476582;  // cosine of 85 degr
 double square(double x) { return x * x; }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-/// Turned clockwise by 90 degrees: the outward direction of a side of a counter-clockwise polygon.
+/// Returns the direction turned clockwise by 90 degrees: outwards from a side of a counter-clockwise polygon.
 Vec2 outwards(const Vec2& direction) { return {direction.y(), -direction.x()}; }
 
-/// Counter-clockwise, without points on its edges (Andrew 1979).
+/// Returns the corners of the convex hull, counter-clockwise (Andrew 1979). Points on its edges are left out.
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     std::ranges::sort(points,
                       [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
@@ -52,10 +54,11 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     return hull;
 }
 
-/// Counter-clockwise.
+/// Corners of a rectangle, counter-clockwise.
 using Corners = std::array<Vec2, 4>;
 
-/// One of its sides lies on an edge of the hull (Freeman and Shapira 1975); ties: the first.
+/// Returns the rectangle of smallest area around the hull. One of its sides lies on an edge of the hull (Freeman and
+/// Shapira 1975); ties: the first such edge.
 Corners smallest_rectangle(std::span<const Vec2> hull) {
     Corners best;
     double least = std::numeric_limits<double>::infinity();
@@ -76,24 +79,24 @@ Corners smallest_rectangle(std::span<const Vec2> hull) {
     return best;
 }
 
-/// A side of the plate, and the points at the border that it was fitted to, moved out as far as the border.
+/// A side of the plate. `border` holds the border points that it was fitted to, moved outwards onto the border.
 struct Side {
     Vec2 point, direction;
     std::vector<Vec2> border;
 };
 
-/// How many strips a side has, and how many points near the line were needed.
+/// Why a side was not found: too few of its `strips` strips, only `found`, have their border point on a line.
 struct NotASide {
     std::size_t found, strips;
 };
 
-/// Strips of equal width across a side of this length, without those at its ends.
+/// Strips of equal width across a side of this length. `end_share` of the length at either end has no strips.
 struct Strips {
     double length;
     std::size_t count;
 
     double width() const { return (1 - 2 * end_share) * length / static_cast<double>(count); }
-    /// The strip of a position along the side; `count` beyond the strips.
+    /// Index of the strip at a position along the side; `count` if no strip is there.
     std::size_t at(double along) const {
         const double strip = (along / length - end_share) / (1 - 2 * end_share);
         if (!(strip >= 0 && strip < 1)) return count;
@@ -101,7 +104,8 @@ struct Strips {
     }
 };
 
-/// The outermost point of every strip. `points`: in coordinates along the side and outwards, as the result.
+/// Returns the outermost point of every strip that has points. In `points` and the result, x runs along the side and y
+/// outwards.
 std::vector<Vec2> border_points(std::span<const Vec2> points, const Strips& strips) {
     std::vector<Vec2> outermost(strips.count, Vec2(0, -std::numeric_limits<double>::infinity()));
     for (const Vec2& p : points)
@@ -111,7 +115,7 @@ std::vector<Vec2> border_points(std::span<const Vec2> points, const Strips& stri
     return outermost;
 }
 
-/// height = offset + slope · position.
+/// The line y = offset + slope · x.
 struct Line {
     double offset = 0, slope = 0;
 
@@ -138,9 +142,10 @@ Line least_squares(std::span<const Vec2> points) {
     return {mean.y() - slope * mean.x(), slope};
 }
 
-/// How far the border is beyond the line through its outermost points: the number n(D) of points to the depth D under
-/// the line is the density times D plus this distance. The density and the distance follow from the integrals of n over
-/// depths up to a strip's width, and from there to twice that width. Strips without points there do not count.
+/// Distance from the line through the outermost points to the border. The number n(D) of points down to the depth D
+/// below the line is the density times the sum of D and this distance. The density and the distance follow from two
+/// integrals of n: over depths up to a strip's width, and from there to twice that width. Points outside all strips do
+/// not count.
 double border_beyond(const Line& line, std::span<const Vec2> points, const Strips& strips) {
     const double depth = strips.width();
     double upper = 0, lower = 0;
@@ -150,11 +155,11 @@ double border_beyond(const Line& line, std::span<const Vec2> points, const Strip
         upper += std::clamp(depth - under, 0.0, depth);
         lower += std::min(2 * depth - under, depth);
     }
-    if (!(lower > upper)) return 0;  // another density there: a part, or a shadow
+    if (!(lower > upper)) return 0;  // the density changes with depth: a part, or a shadow
     return std::clamp(upper * depth / (lower - upper) - depth / 2, 0.0, depth);
 }
 
-/// The side near that from `a` to `b`, or why there is none.
+/// Finds the side of the plate near the line from `a` to `b`, or returns why there is none.
 std::variant<Side, NotASide> side_near(std::span<const Vec2> points, const Vec2& a, const Vec2& b, double spacing,
                                        double tolerance, Random random) {
     constexpr double most_strips = 200;
@@ -199,7 +204,8 @@ Vec2 intersection(const Side& a, const Side& b) {
     return a.point + cross(b.point - a.point, b.direction) / cross(a.direction, b.direction) * a.direction;
 }
 
-/// Corners of the rectangle with these sides nearest to the given corners: least squares about the centroid.
+/// Returns the corners of the rectangle with these side lengths that is nearest to the given corners, by least squares
+/// about their centroid.
 Corners of_size(const Corners& found, double first, double second) {
     const Corners ideal{Vec2(-first, -second) / 2, Vec2(first, -second) / 2, Vec2(first, second) / 2,
                         Vec2(-first, second) / 2};
@@ -221,13 +227,14 @@ void require_right_angles(const std::array<Side, 4>& sides) {
         const Vec2 &one = sides[i].direction, &next = sides[(i + 1) % 4].direction;
         const double cosine = one.dot(next);
         if (!(std::abs(cosine) <= largest_skew_cosine))
-            throw Error("two sides of the plane meet at {:.4g} deg; 90 deg within 5 deg are needed",
+            throw Error("two sides of the plane meet at {:.4g} deg; from 85 to 95 deg are needed",
                         angle_of(-cosine, std::abs(cross(one, next))) * 180 / std::numbers::pi)
                 .hint("crop the scan to the plate");
     }
 }
 
-/// The given lengths in the order of the found ones. Throws Error if they differ by more than `most`.
+/// Returns the given lengths in the order that fits the found lengths better. Throws Error if a given length differs
+/// from the found one by more than `most`.
 std::array<double, 2> matched(std::array<double, 2> given, const Rectangle& found, double most) {
     const auto off = [&] {
         return std::max(std::abs(given[0] - found.first_side), std::abs(given[1] - found.second_side));
@@ -237,8 +244,8 @@ std::array<double, 2> matched(std::array<double, 2> given, const Rectangle& foun
     if (straight <= off()) std::swap(given[0], given[1]);
     if (!(off() <= most))
         throw Error(
-            "the sides of the plane are {:.6g} and {:.6g} u long; {:.6g} and {:.6g} u are given, and at most "
-            "{:.3g} u of difference is accepted",
+            "the sides of the plane are {:.6g} and {:.6g} u long, but {:.6g} and {:.6g} u are given; at most {:.3g} u "
+            "of difference is accepted",
             found.first_side, found.second_side, given[0], given[1], most)
             .hint("check `sides` and the unit of the scan, crop the scan to the plate, or give a larger `tolerance`");
     return given;
@@ -268,7 +275,7 @@ double extent_of(std::span<const Vec2> points) {
 
 std::vector<Vec2> without_strays(std::span<const Vec2> points, double cell) {
     CellGrid grid(Vec3::Zero(), cell);
-    std::vector<Vec3> cells;  // the first point in each
+    std::vector<Vec3> cells;  // the first point of each cell
     std::vector<u32> cell_of;
     for (const Vec2& p : points) {
         const Vec3 point(p.x(), p.y(), 0);
@@ -304,8 +311,8 @@ Rectangle rectangle_of(std::span<const Vec2> points, double spacing, double tole
     }
     if (!missing.empty())
         throw Error(
-            "{} of 4 sides of the plane {} straight within {:.4g} u: only {} lie on a line; half of them are "
-            "needed",
+            "{} of 4 sides of the plane {} straight within {:.4g} u: only {} lie on a line; half of a side's strips "
+            "are needed",
             missing.size(), by_count(missing.size(), "is not", "are not"), tolerance + spacing, enumerated(missing))
             .hint("crop the scan to a rectangular plate whose border was scanned, or give a larger `tolerance`");
     require_right_angles(sides);

@@ -299,7 +299,7 @@ TEST(PlateCornersRefusals, ALozengeIsNotARectangle) {
 
 TEST(PlateCornersRefusals, OtherSidesThanGiven) {
     EXPECT_THAT(refusal(cloud(grid(20, 10, 0.5)), of_sides(10, 22, 0.1)).sentence(),
-                MatchesRegex("the sides of the plane are 10[.0-9]* and 20[.0-9]* u long; 10 and 22 u are given, and at "
+                MatchesRegex("the sides of the plane are 10[.0-9]* and 20[.0-9]* u long, but 10 and 22 u are given; at "
                              "most 1.2 u of difference is accepted"));
 }
 
@@ -307,7 +307,7 @@ TEST(PlateCornersRefusals, AnUprightPlateNeedsUp) {
     std::vector<Vec3> upright;
     for (const Vec3& p : grid(20, 10, 0.5)) upright.emplace_back(p.x(), 0, p.y());
     EXPECT_EQ(refusal(cloud(upright), within(0.1)).sentence(),
-              "`up` is 90 deg off the normal of the plate; at most 60 deg decide which side is up");
+              "`up` is 90 deg off the normal of the plate; the upper side is undecided above 60 deg");
 }
 
 TEST(PlateCornersRefusals, NormalsAlongThePlate) {
@@ -315,10 +315,9 @@ TEST(PlateCornersRefusals, NormalsAlongThePlate) {
     Array<double> normals;
     for (std::size_t i = 0; i < points.size(); ++i) normals.insert(normals.end(), {1, 0, 0});
     points.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
-    EXPECT_EQ(
-        refusal(points, within(0.1)).sentence(),
-        "the mean normal of the plate's points is 90 deg off the normal of the plate; at most 60 deg decide which "
-        "side is up");
+    EXPECT_EQ(refusal(points, within(0.1)).sentence(),
+              "the mean normal of the plate's points is 90 deg off the normal of the plate; the upper side is "
+              "undecided above 60 deg");
 }
 
 TEST(PlateCornersRefusals, ScatteredPoints) {
