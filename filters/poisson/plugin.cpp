@@ -9,30 +9,32 @@ SCANMILL_FILTER() {
     return Declare<P>("poisson", 4)
         .summary("Makes a surface of points with normals, also where points are missing.")
         .source("Kazhdan, Hoppe 2013, Screened Poisson surface reconstruction; by PCL")
-        .ties("Of vertices of equal density the lower row is removed first. A vertex at exactly `max-distance` stays.")
+        .ties(
+            "Among vertices of equal density, the lower row is removed first. A vertex at exactly `max-distance` "
+            "stays.")
         .not_finite(
             "Coordinates: refused; the message gives their number and the first one. Normals: the point is not used, "
             "with a warning.")
         .adds({"density"})
         .in<PointCloud>("points",
-                        "Finite coordinates and the column `normal`, to the outside, of any length above 0; at least 4 "
-                        "different positions that are not on one line.")
+                        "Points with finite coordinates and the column `normal`: vectors of any length above 0 that "
+                        "point outwards. At least 4 different positions that are not on one line are needed.")
         .out<TriangleMesh>("mesh",
                            "The surface, with the vertex column `density`: about 1 where points are as dense as usual, "
                            "1/100 where they are ten times as far away.")
         .param("depth", &P::depth,
-               "The octree has at most 2^depth cells along the edge of its cube. A step more halves the cells and "
-               "takes up "
-               "to four times the time and memory.",
+               "The octree has at most 2^depth cells along the edge of its cube. Raising the depth by 1 halves the "
+               "cells and takes up to four times the time and memory.",
                at_least(3), at_most(12))
         .param("scale", &P::scale,
-               "Edge of the octree's cube, in longest sides of the points' box. A larger cube closes gaps that face "
-               "its sides, with larger cells at equal `depth`.",
+               "Edge of the octree's cube, as a multiple of the longest side of the points' box. A larger cube closes "
+               "gaps that face its sides, but has larger cells at equal `depth`.",
                above(1), at_most(10))
-        .param("trim", &P::trim, "Share of the vertices that is removed, the least dense ones; 0 keeps all.",
+        .param("trim", &P::trim, "Share of the vertices to remove, those of least density first; 0 keeps all.",
                at_least(0), below(1))
         .param("max-distance", &P::max_distance,
-               "Vertices farther than this from every point are removed, too; `none`: none.", above(0), word("none"))
+               "Vertices farther than this from every point are removed, too; with `none`, distance removes no vertex.",
+               above(0), word("none"))
         .metric("triangles", Unit::count, "Triangles of the surface.")
         .metric("trimmed", Unit::count, "Vertices removed by `trim` and `max-distance`.")
         .metric("invented", Unit::ratio,
@@ -48,7 +50,7 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("without-normal", Unit::count, "Points that are not used, because their normal is 0 or NaN.",
                 smaller_is_better)
-        .metric("cracks", Unit::count, "Holes of a few edges that the library leaves, and that were filled.")
+        .metric("cracks", Unit::count, "Holes of a few edges that PCL leaves in the surface and that were filled.")
         .metric("loops", Unit::count, "Boundary loops of the surface.", headline)
         .metric("cell", Unit::length, "Edge of the smallest cell that the octree may have.")
         .run([](const Inputs& inputs, const P& params, Context& context) {

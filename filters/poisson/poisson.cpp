@@ -34,13 +34,13 @@ namespace scanmill {
 namespace {
 
 constexpr u32 least_depth = 3, most_depth = 12;
-constexpr int full_depth = 5;  // PCL divides its octree no earlier
+constexpr int full_depth = 5;  // PCL accepts no smaller depth for dividing its octree
 constexpr double most_scale = 10;
 constexpr std::size_t neighbours = 8;
-constexpr double far_factor = 2;  // times the distance to the 8th neighbour
+constexpr double far_factor = 2;  // points are far beyond this multiple of the distance to the 8th neighbour
 constexpr double doubtful_share = 0.05;
-constexpr double least_flatness = 1e-12;  // for points that are not on one line
-constexpr u32 most_crack_edges = 12;  // loops with more are where the surface leaves the octree's cube
+constexpr double least_flatness = 1e-12;  // points with a smaller flatness are on one line
+constexpr u32 most_crack_edges = 12;  // a longer loop is where the surface leaves the octree's cube
 constexpr std::size_t chunk = 1 << 10;
 
 void require_usable(const PointCloud& cloud, const PoissonParams& params) {
@@ -49,7 +49,7 @@ void require_usable(const PointCloud& cloud, const PoissonParams& params) {
             .hint("9 suits most scans; time and memory grow up to fourfold with every step");
     if (!(params.scale > 1 && params.scale <= most_scale))
         throw Error("scale must be above 1 and at most {}; it is {:g}", most_scale, params.scale)
-            .hint("1.5 suits most scans; a larger cube needs a larger depth for cells as small");
+            .hint("1.5 suits most scans; a larger cube needs a larger depth for cells of the same size");
     if (const double trim = params.trim.value(); !(trim >= 0 && trim < 1))
         throw Error("trim must be from 0 to below 100 %; it is {:g} %", 100 * trim)
             .hint("`0 %` keeps the whole surface; `2 %` removes the 2 % of the vertices that have the fewest points");
@@ -105,7 +105,8 @@ void require_extent(const PointTree& tree) {
             .hint("a scan of one line has no surface");
 }
 
-/// PCL's surface of the points. Its memory is static, so calls from several threads wait for each other.
+/// Returns PCL's surface of the points, and in `cell` the edge of the octree's smallest possible cell. PCL's memory is
+/// static, so calls from several threads wait for each other.
 TriangleMesh surface_of(const Oriented& points, const Frame& frame, const PoissonParams& params, double& cell) {
     const BoundingBox box = bounding_box(points.positions);
     const Vec3 centre = (box.low + box.high) / 2;
@@ -134,7 +135,7 @@ TriangleMesh surface_of(const Oriented& points, const Frame& frame, const Poisso
     if (triangles.empty())
         throw Error("no surface separates the {} points: their normals cancel out, or the octree is too coarse",
                     points.positions.size())
-            .hint("check the sides of the normals, or raise depth");
+            .hint("check that the normals point outwards, or raise depth");
     cell = params.scale * size / (1 << params.depth);
     Array<Vec3> positions;
     positions.reserve(vertices.size());
@@ -171,12 +172,12 @@ Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     return {filled.filled, filled.failed};
 }
 
-/// By vertex: how the points support it.
+/// How densely the points support each vertex. All members but `spread` and `usual` have one value per vertex.
 struct Support {
     Array<double> nearest, last;  ///< distances to the nearest and to the 8th nearest position
-    std::vector<u8> far, against;
-    Array<double> spread;  ///< by position: the distance to the 8th nearest other one
-    double usual = 0;  ///< median distance from a position to the 8th nearest other one
+    std::vector<u8> far, against;  ///< flags, as poisson.hpp defines them
+    Array<double> spread;  ///< distance from each position to the 8th nearest other one
+    double usual = 0;  ///< median of `spread`
 };
 
 Support support_of(const TriangleMesh& mesh, const Oriented& points, const PointTree& tree, Context& context) {
@@ -214,7 +215,7 @@ Support support_of(const TriangleMesh& mesh, const Oriented& points, const Point
     return support;
 }
 
-/// The share of the positions, of about 10,000 spread evenly, that are far from the surface.
+/// Share of the positions that are far from the surface. Only every n-th position is tested, at most 10,000.
 double missed_share(const TriangleMesh& mesh, std::span<const Vec3> positions, const Support& support, double cell,
                     Context& context) {
     constexpr std::size_t most = 10'000;
@@ -230,7 +231,7 @@ double missed_share(const TriangleMesh& mesh, std::span<const Vec3> positions, c
     return static_cast<double>(missed) / static_cast<double>(all);
 }
 
-/// By vertex: 1 for those that trimming removes.
+/// Returns one flag per vertex: 1 if trimming removes the vertex.
 std::vector<u8> removed_vertices(const Support& support, const PoissonParams& params) {
     const std::size_t count = support.last.size();
     std::vector<u8> removed(count, 0);
@@ -247,7 +248,7 @@ std::vector<u8> removed_vertices(const Support& support, const PoissonParams& pa
     return removed;
 }
 
-/// The mesh without the removed vertices, with densities.
+/// Returns the mesh without the removed vertices and their triangles, with the column `density`.
 TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vector<u8>& removed,
                      const PoissonParams& params) {
     Array<Triangle> kept;
@@ -288,8 +289,8 @@ void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t op
                         count_text(ends, "boundary loop", "boundary loops")));
     if (open_cracks > 0)
         context.warn(
-            fmt::format("{} that cells of different sizes leave in the surface {} open: every filling would "
-                        "intersect something",
+            fmt::format("{} between cells of different sizes {} open in the surface: every triangulation of the hole "
+                        "would intersect something",
                         count_text(open_cracks, "crack", "cracks"), by_count(open_cracks, "stays", "stay")));
     if (inside_out)
         context.warn("the normals point into the volume that the surface encloses; the surface is turned like them");
@@ -300,8 +301,8 @@ void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t op
                         100 * result.invented));
     if (result.missed > doubtful_share)
         context.doubt(
-            fmt::format("{:.1f} % of the points are far from the surface (more than {:g} cells, or twice the distance "
-                        "to their 8th neighbours): parts are too small for cells of {:.3g} u; raise depth",
+            fmt::format("{:.1f} % of the points are far from the surface (more than {:g} cells, and more than twice "
+                        "the distance to their 8th neighbours): parts are too small for cells of {:.3g} u; raise depth",
                         100 * result.missed, far_factor, result.cell));
     if (result.against > doubtful_share)
         context.doubt(

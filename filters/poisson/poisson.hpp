@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Makes a surface of points with normals: the boundary between inside and outside that agrees best with all of them.
+/// Makes a surface of points with normals: the boundary between inside and outside that agrees best with all of the
+/// points and normals.
 ///
 /// Source: Kazhdan, Hoppe 2013, "Screened Poisson surface reconstruction"; by pcl::Poisson.
 
@@ -16,22 +17,23 @@ namespace scanmill {
 struct PoissonParams {
     /// The octree has at most 2^depth cells along an edge of its cube; from 3 to 12.
     u32 depth = 9;
-    /// Edge of the octree's cube, in longest sides of the points' box; above 1, at most 10.
+    /// Edge of the octree's cube, as a multiple of the longest side of the points' box; above 1, at most 10.
     double scale = 1.5;
-    /// Share of the vertices, the least dense ones, that are removed; from 0 to below 1.
+    /// Share of the vertices to remove, those of least density first; from 0 to below 1.
     Ratio trim = Ratio::percent(2);
-    /// Vertices farther than this from every point are removed as well; above 0. Empty: none.
+    /// Vertices farther than this from every point are removed as well; above 0. If empty, no vertex is removed for its
+    /// distance.
     std::optional<Length> max_distance;
 };
 
 struct PoissonResult {
     /// With the vertex column `density` (1 × float32). Every vertex is in a triangle.
     TriangleMesh mesh;
-    /// Vertices removed by `trim` and `max_distance`, and with them those left without a triangle.
+    /// Vertices removed by `trim` and `max_distance`, including those left without a triangle.
     std::size_t trimmed = 0;
     /// Points that are not used, because their normal is 0, NaN or infinite.
     std::size_t without_normal = 0;
-    /// Holes of a few edges that PCL leaves in the surface, and that were filled.
+    /// Holes of a few edges that PCL leaves in the surface and fill_holes() fills.
     std::size_t cracks = 0;
     /// Boundary loops of the mesh.
     std::size_t loops = 0;
@@ -39,46 +41,50 @@ struct PoissonResult {
     double invented = 0;
     /// Share of the points that are far from the surface, before trimming.
     double missed = 0;
-    /// Share of the vertices whose nearest points have normals on the other side.
+    /// Share of the vertices where the surface faces away from the normals of the nearest points.
     double against = 0;
     /// Edge of the octree's smallest possible cell.
     double cell = 0;
 };
 
-/// The surface where the function jumps that is 1 inside and 0 outside, whose gradient is nearest to the points'
-/// normals and which is half at the points (least squares, on an octree that is fine where points are dense).
+/// Fits a function that is 1 inside and 0 outside by least squares: its gradient is nearest to the points' normals, and
+/// it is about one half at the points. The octree that carries it is fine where points are dense. The surface is where
+/// the function is one half.
 ///
-/// Density. That of a vertex is (m / d)², where d is the distance to its 8th nearest position of the points (to the
-/// last one if there are fewer), and m the median, over all positions, of the distance to the 8th nearest other one. It
-/// is about 1 where points are as dense as usual, and 1/100 where they are ten times as far away. The floor(trim ×
-/// #vertices) vertices of least density are removed, with their triangles; ties: the lowest rows.
+/// Density. The density of a vertex is (m / d)². The distance d is that from the vertex to the 8th nearest position of
+/// the points (to the last one if there are fewer). The length m is the median, over all positions, of the distance to
+/// the 8th nearest other position. The density is about 1 where points are as dense as usual, and 1/100 where they are
+/// ten times as far away. The floor(trim × #vertices) vertices of least density are removed, with their triangles;
+/// ties: the lowest rows.
 ///
-/// Invented. A vertex is far from all points if its distance to the nearest one is more than twice the distance from
-/// there to the 8th nearest other one. Every triangle counts as invented in the share of its vertices that are far.
+/// Invented. A vertex is far from all points if its distance to the nearest position is more than twice the distance
+/// from that position to its 8th nearest other one. The share of a triangle's vertices that are far is the share of its
+/// area that counts as invented.
 ///
-/// Missed. A position of the points, of about 10,000 spread evenly over them, that is farther from the surface before
-/// trimming than twice the smallest cell and twice the distance to its 8th nearest other one.
+/// Missed. A position is missed if its distance to the surface before trimming is more than twice the smallest cell and
+/// more than twice the distance to its 8th nearest other position. At most 10,000 positions, spread evenly, are tested.
 ///
-/// Against. A vertex of the surface before trimming, the sum of whose 8 nearest positions' normals has a negative
-/// product with the vertex's normal.
+/// Against. A vertex of the surface before trimming is against its points if its normal has a negative dot product with
+/// the sum of the normals at the 8 nearest positions.
 ///
-/// Pre: the column `normal`, 3 numbers, of any length above 0, to the outside; finite coordinates; at least 4 different
-///      positions with a normal, not on one line. Throws Error otherwise, for a parameter out of range, if no surface
-///      separates the points, and if trimming leaves no triangle.
-/// Post: triangles are counter-clockwise seen from the outside of the normals. With a trim of 0 and no `max_distance`
-///       the surface is closed, unless it leaves the octree's cube, which is centred on the points' box: that of an
-///       open sheet does, and one with a gap near a face of the cube.
-/// Doubts its result if more than 5 % of its area is invented or of the points missed, and if more than 5 % of the
-/// vertices are against their points. Warns of points without a normal, of a surface that leaves the cube, of cracks
-/// that stay open, of a closed surface that is inside out, and of columns of the points other than `normal`, which are
-/// dropped.
+/// Pre:  the column `normal`, 3 numbers, of any length above 0, that points outwards; finite coordinates; at least 4
+///       different positions with a normal, not on one line. Throws Error otherwise, for a parameter out of range, if
+///       no surface separates the points, and if trimming leaves no triangle.
+/// Post: triangles are counter-clockwise seen from the side to which the normals point. With a trim of 0 and no
+///       `max_distance`, the surface is closed, unless it leaves the octree's cube, which is centred on the points'
+///       box. The surface of an open sheet leaves the cube. A surface with a gap near a face of the cube may leave it,
+///       too.
+/// Doubts its result if more than 5 % of its area is invented, if more than 5 % of the points are missed, or if more
+/// than 5 % of the vertices are against their points. Warns of points without a normal, of a surface that leaves the
+/// cube, of cracks that stay open, of a closed surface that is inside out, and of columns of the points other than
+/// `normal`, which are dropped.
 ///
-/// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. They depend on
-/// the order of the points. PCL cannot be cancelled: the call returns after its part. It prints messages on stdout and
-/// stderr, keeps the octree's memory for the next call, and leaks 4^(depth + 2) bytes.
-/// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as
-/// the distance between points. Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`,
-/// `cracks`, `loops`, `cell`.
+/// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. The bytes depend
+/// on the order of the points. PCL cannot be cancelled: a cancelled call returns only after PCL's part. PCL prints
+/// messages on stdout and stderr, keeps the octree's memory for the next call, and leaks 4^(depth + 2) bytes.
+/// Cost: time and memory grow with the surface's area in cells. They grow fourfold with every step of `depth`, until
+///       cells are as small as the distance between points.
+/// Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`, `cracks`, `loops`, `cell`.
 PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Context& context);
 
 }  // namespace scanmill

@@ -309,7 +309,7 @@ TEST(PoissonRefuses, NormalsThatCancelOut) {
     });
     const Error error = error_of([&] { made(cloud, with(5, 0)); });
     EXPECT_THAT(error.sentence(), HasSubstr("no surface separates the 400 points"));
-    EXPECT_THAT(error.hint(), HasSubstr("check the sides of the normals"));
+    EXPECT_THAT(error.hint(), HasSubstr("check that the normals point outwards"));
 }
 
 TEST(Poisson, TwoScales_AreFineWhereThePointsAre) {
