@@ -19,10 +19,10 @@ namespace {
 
 using Method = SmoothParams::Method;
 
-constexpr double doubtful_error = 0.25;  // fit error as a share of the neighbourhood; about 0.5 in a filled ball
+constexpr double doubtful_error = 0.25;  // limit of Jet::error, which is about 0.5 for points that fill a ball
 constexpr std::size_t chunk = 1 << 10;
 
-/// By position of the tree.
+/// Results of all points, by their index in the tree.
 struct Moves {
     Array<Vec3> offsets;
     Array<double> errors;  ///< fit errors of the polynomials, see Jet::error
@@ -92,7 +92,7 @@ Moves moves_of(const PointTree& tree, const SmoothParams& params, Context& conte
     return moves;
 }
 
-/// Median error over the points that have a polynomial; not all are flat.
+/// Median fit error of the points whose neighbours determine a polynomial. Pre: there is such a point.
 double median_error(const Moves& moves) {
     Array<double> errors;
     for (std::size_t i = 0; i < moves.errors.size(); ++i)
@@ -113,7 +113,8 @@ PointCloud moved_points(const PointCloud& cloud, std::span<const u32> index_of_r
     add_column(result.columns, Column("moved", 1, Buffer<float>(std::move(distances))).with_length_exponent(1),
                context);
     if (cloud.columns.find("normal"))
-        context.warn("the column 'normal' is that of the points before they moved; the filter normals makes new ones");
+        context.warn(
+            "the column 'normal' holds the normals from before the points moved; the filter normals computes new ones");
     return result;
 }
 
@@ -140,7 +141,7 @@ SmoothResult smooth(const PointCloud& cloud, const SmoothParams& params, Context
             .hint("`scanmill info` shows what a file contains");
     const Moves moves = moves_of(tree, params, context);
     if (std::ranges::all_of(moves.flat, [](u8 it) { return it == 1; }))
-        throw Error("the neighbours of none of the {} determine a surface: they are too few, or on a line",
+        throw Error("none of the {} has neighbours that determine a surface: they are too few, or on a line",
                     count_text(positions, "position", "positions"))
             .hint(params.radius ? "raise radius, or leave it out to use the nearest neighbours"
                                 : "smoothing needs at least 6 positions that are not on one line");
@@ -156,7 +157,7 @@ SmoothResult smooth(const PointCloud& cloud, const SmoothParams& params, Context
     result.points = moved_points(cloud, tree.index_of_row(), moves, context);
     if (const double error = median_error(moves); error > doubtful_error)
         context.doubt(fmt::format(
-            "the neighbours of a point miss the surface that fits them by {:.0f} % of their distance to the "
+            "the neighbours of a point deviate from the surface that fits them by {:.0f} % of their distance to the "
             "point (median): they form no surface at that size; remove outliers, or change {}",
             100 * error, params.radius ? "radius" : "neighbours"));
     context.metric("moved-rms", result.moved_rms, Unit::length);

@@ -186,7 +186,7 @@ TEST(SmoothRefuses, CloudsWithoutASurface) {
     cloud.positions = std::move(line);
     const Error error = error_of([&] { smoothed(cloud); });
     EXPECT_EQ(error.sentence(),
-              "the neighbours of none of the 40 positions determine a surface: they are too few, or on a line");
+              "none of the 40 positions has neighbours that determine a surface: they are too few, or on a line");
     EXPECT_FALSE(error.hint().empty());
     EXPECT_THAT(error_of([] { smoothed(fibonacci_sphere(100), with(Method::jet, 24, 1e-6)); }).hint(),
                 HasSubstr("raise radius"));
