@@ -12,13 +12,13 @@ namespace scanmill::probing {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/// Ranges that are empty by less are a single direction: covers rounding.
+/// A range whose minimum exceeds its maximum by at most this, by rounding, is a single direction.
 constexpr double angle_rounding = 1e-12;
 
 /// The angle of (x, y) in (-pi, pi].
 double arc_tangent(double y, double x) { return y < 0 ? -angle_of(x, -y) : angle_of(x, y); }
 
-/// NaN if low exceeds high.
+/// Returns an empty range if low exceeds high.
 AngleRange range_between(double low, double high) {
     if (low > high + angle_rounding) return {};
     return {std::min(low, high), std::max(low, high)};
@@ -43,7 +43,7 @@ AngleRange range_of_position(double alpha, double radius, const Vec2& position) 
 }
 
 AngleRange range_on_left_face(double alpha, double radius, double error, double beyond) {
-    // Along a line, the direction from T to a fixed centre turns one way, so the ends of the line decide.
+    // While T moves along a line, the direction from T to a fixed centre turns one way. So the ends of the line decide.
     const AngleRange inner = range_of_position(alpha, radius, on_left_face(alpha, error)),
                      outer = range_of_position(alpha, radius, on_left_face(alpha, -beyond));
     return range_between(std::max(inner.min, outer.min), std::min(inner.max, outer.max));
@@ -59,8 +59,8 @@ EdgeFirst::EdgeFirst(double alpha, double radius, double phi) {
     const Turn turn = turn_of(phi);
     cosine_ = turn.cosine;
     sine_ = turn.sine;
-    // beta is within a quarter turn; a line that passes farther than the radius meets no edge. With |phi| and `half`
-    // below a quarter turn, only one of the two limits can be beyond that.
+    // beta is at most a quarter turn: a ball whose line passes Q farther away than the radius does not meet the edge.
+    // As |phi| and `half` are at most a quarter turn, only one of phi - half and phi + half can exceed one.
     low_ = phi - half <= -pi / 2 ? -radius : radius * turn_of(phi - half).sine;
     high_ = phi + half >= pi / 2 ? radius : radius * turn_of(phi + half).sine;
 }

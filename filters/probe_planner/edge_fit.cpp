@@ -13,7 +13,8 @@ namespace scanmill::probing {
 namespace {
 
 constexpr std::size_t most_facets = 1000;
-/// The smallest value at the edges of five scanned double cones and cones on hemispheres is 0.017; a chamfer has 0.
+/// Least spread_between() at an edge. The smallest value at the edges of five scanned double cones and cones on
+/// hemispheres is 0.017; a chamfer has 0.
 constexpr double least_spread = 0.015;
 constexpr double sine_10 = 0.17364817766693033;
 /// Squared lengths of the chords of 15 degrees and of 1 degree on the unit sphere.
@@ -21,7 +22,7 @@ constexpr double chord_15 = 0.06814834742186338, chord_1 = 0.00030460968721746;
 
 enum class Side : u8 { first, second, none };
 
-/// Relative to the point.
+/// A triangle near the point. Its corners are relative to the point.
 struct Facet {
     std::array<Vec3, 3> corners;
     Vec3 normal;
@@ -55,7 +56,7 @@ std::vector<Facet> facets_near(const TriangleTree& mesh, const Vec3& point, doub
     return facets;
 }
 
-/// { x : normal · (x - centre) = 0 }; no normal if no facet is on the side.
+/// The plane { x : normal · (x - centre) = 0 }. The normal is 0 if no facet is on the side.
 struct Plane {
     Vec3 normal = Vec3::Zero(), centre = Vec3::Zero();
 };
@@ -74,7 +75,7 @@ Plane plane_of(const std::vector<Facet>& facets, Side side) {
     return plane;
 }
 
-/// Divides facets by the sign along the direction in which the normals differ most.
+/// Divides the facets in two along the direction in which their normals differ most.
 void divide(std::vector<Facet>& facets) {
     double weight = 0;
     Vec3 mean = Vec3::Zero();
@@ -92,7 +93,7 @@ void divide(std::vector<Facet>& facets) {
     for (Facet& facet : facets) facet.side = across.dot(facet.normal - mean) > 0 ? Side::first : Side::second;
 }
 
-/// Assigns each facet to the plane that all its corners are nearer to. Returns whether any changed.
+/// Assigns each facet to the plane that all its corners are nearer to, or to none. Returns whether any changed.
 bool divide_anew(std::vector<Facet>& facets, const Plane& first, const Plane& second) {
     const auto side_of = [&](const Vec3& corner) {
         const double to_first = std::abs(first.normal.dot(corner - first.centre)),
@@ -109,7 +110,8 @@ bool divide_anew(std::vector<Facet>& facets, const Plane& first, const Plane& se
     return is_changed;
 }
 
-/// The height above the plane through the point, at the edge, by the parabola height = offset + factor · along².
+/// Returns the height of the face of `side`, at the edge, above the plane through the point. It is the offset of the
+/// parabola height = offset + factor · along² that fits the facets.
 double offset_of(const std::vector<Facet>& facets, Side side, const Vec3& normal, const Vec3& tangent) {
     double weight = 0, mean_square = 0, mean_height = 0;
     const auto for_each = [&](auto&& call) {
@@ -133,8 +135,8 @@ double offset_of(const std::vector<Facet>& facets, Side side, const Vec3& normal
     return variance > 0 ? mean_height - covariance / variance * mean_square : mean_height;
 }
 
-/// Root mean square of how far the normals of the triangles that are left out lie from their mean, along the way from
-/// one normal to the other, which has the length 1.
+/// Root mean square deviation of the left-out triangles' normals from their mean, along n2 - n1 and as a share of its
+/// length. Infinite if no triangle is left out.
 double spread_between(const std::vector<Facet>& facets, const Vec3& n1, const Vec3& n2) {
     const Vec3 way = (n2 - n1) / (n2 - n1).squaredNorm();
     double weight = 0, mean = 0, variance = 0;

@@ -24,14 +24,17 @@ void require_unit(const Vec3& normal, u32 line, u32 segment, const char* side) {
     constexpr double most = 1e-3;
     if (!normal.allFinite())
         throw Error("the {} normal of segment {} of line {} is not finite", side, segment, line)
-            .hint("make the features again from a mesh without NaN: `features`, or region-grow's port `features`");
+            .hint(
+                "make the features again from a mesh without NaN: use the filter `features`, or region-grow's port "
+                "`features`");
     if (std::abs(normal.norm() - 1) > most)
         throw Error("the {} normal of segment {} of line {} has the length {:.6g}; a unit normal has 1", side, segment,
                     line, normal.norm())
-            .hint("make the features again: `features`, or region-grow's port `features`");
+            .hint("make the features again: use the filter `features`, or region-grow's port `features`");
 }
 
-/// Throws unless the arrays fit, of lines that are not chosen, too: whether lines meet depends on all of them.
+/// Throws Error unless the arrays of all lines fit, also of lines that are not chosen: whether lines meet depends on
+/// all of them.
 void require_consistent(const FeatureGraph& graph) {
     if (graph.left_normals.size() != graph.vertices.size() || graph.right_normals.size() != graph.vertices.size())
         throw Error("the features have {} left and {} right normals for {} vertices of lines",
@@ -62,7 +65,7 @@ Line read_line(const FeatureGraph& graph, u32 row) {
     if (line.is_boundary() && !line.closed)
         throw Error("line {} is an open {} with {} vertices; boundaries of a mesh are closed", row, name_of(line.type),
                     polyline.end - polyline.begin)
-            .hint("make the features again from a mesh, or probe creases alone: features: creases");
+            .hint("make the features again from a mesh, or probe only creases: `features: creases`");
     for (u32 i = polyline.begin; i < polyline.end; ++i) {
         const u32 vertex = graph.vertices[i];
         if (!graph.positions[vertex].allFinite())
@@ -104,7 +107,8 @@ Line read_line(const FeatureGraph& graph, u32 row) {
     return line;
 }
 
-/// The vertex `steps` segments before (negative) or after a vertex, at most to the ends of an open line.
+/// Returns the vertex `steps` segments after a vertex, or before it if `steps` is negative. The ends of an open line
+/// are the limits.
 Vec3 beside(const Line& line, u32 vertex, int steps) {
     const auto count = static_cast<int>(line.vertices());
     const int at = static_cast<int>(vertex) + steps;
@@ -159,9 +163,9 @@ std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& c
         throw Error("there is no line to probe: the features have {}, {} and {}",
                     count_text(counts[0], "outer boundary", "outer boundaries"), count_text(counts[1], "hole", "holes"),
                     count_text(counts[2], "crease", "creases"))
-            .hint(features.polylines.empty()
-                      ? "a closed mesh without sharp edges has no features; lower sharp-angle where they are found"
-                      : "features: all takes every line");
+            .hint(features.polylines.empty() ? "a closed mesh without sharp edges has no features; lower `sharp-angle` "
+                                               "in the filter that finds them"
+                                             : "`features: all` probes every line");
     find_stops(features, lines);
     return lines;
 }

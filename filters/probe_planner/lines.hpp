@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Feature lines as they are probed: polylines with the normals on both sides of every segment, and windows on them.
+/// Feature lines for probing: polylines with the normals on both sides of every segment, and windows on these lines.
 
 #include <numbers>
 #include <optional>
@@ -10,21 +10,22 @@
 
 namespace scanmill::probing {
 
-/// The hint for arrays that do not fit.
+/// Hint for features whose arrays do not fit together.
 inline constexpr const char* damaged = "the features are damaged: make them again from a mesh";
 inline constexpr double sqrt_half = std::numbers::sqrt2 / 2;
 
-/// A polyline with what is computed once for every segment. Segment i starts at vertex i; those of closed lines wrap.
+/// A polyline with the values that are computed once per segment. Segment i starts at vertex i. The last segment of a
+/// closed line ends at vertex 0.
 struct Line {
     u32 row = 0;
     FeatureType type{};
     bool closed = false;
     Array<Vec3> points, left,
-        right;  ///< right: zero also where it is not perpendicular to the line to within 45 degrees
+        right;  ///< right: zero if unknown, or within 45 degrees of the line's direction
     Array<Vec3> directions;
     Array<double> lengths;
-    Array<double> arcs;  ///< where the segments begin, and the whole length
-    std::vector<bool> stops;  ///< vertices that no window passes
+    Array<double> arcs;  ///< arc length at which each segment begins, then the whole length
+    std::vector<bool> stops;  ///< by vertex: whether windows end there
 
     u32 vertices() const { return static_cast<u32>(points.size()); }
     u32 segments() const { return static_cast<u32>(lengths.size()); }
@@ -33,7 +34,7 @@ struct Line {
     Vec3 middle(u32 segment) const { return (points[segment] + end_of(segment)) / 2; }
     double middle_arc(u32 segment) const { return arcs[segment] + lengths[segment] / 2; }
     bool has_right(u32 segment) const { return right[segment] != Vec3::Zero(); }
-    /// The segments beside one; nothing at the ends of open lines.
+    /// The previous and the next segment; empty at the ends of open lines.
     std::optional<u32> before(u32 segment) const {
         if (segment > 0) return segment - 1;
         return closed ? std::optional(segments() - 1) : std::nullopt;
@@ -48,20 +49,20 @@ struct LineChoice {
     bool creases = true, holes = true, boundaries = true;
 };
 
-/// The lines of the choice, in their order. Throws Error as find_reference_points() does.
+/// Returns the chosen lines in the order of their rows. Throws Error as find_reference_points() does.
 std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice);
 
-/// Consecutive segments round one.
+/// Consecutive segments around one segment.
 struct Window {
     Array<u32> segments;
     Vec3 start, end;
     double length = 0;
 };
 
-/// The window round a point of a segment: see reference_points.hpp.
+/// Returns the window around a point of a segment, as reference_points.hpp defines it.
 Window window_round(const Line& line, u32 segment, const Vec3& point);
 
-/// The length-weighted mean of unit normals, without those that are zero.
+/// Returns the sum of the normals in the window, weighted by the lengths of their segments; not normalized.
 Vec3 mean_normal(const Line& line, const Window& window, const Array<Vec3>& normals);
 
 inline Vec3 perpendicular(const Vec3& normal, const Vec3& tangent) { return normal - tangent.dot(normal) * tangent; }

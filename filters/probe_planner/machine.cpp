@@ -42,7 +42,7 @@ bool Machine::is_approach_free(const Vec3& touch, const Vec3& start, const Vec3&
 
 FirstContact Machine::first_contact(const Vec3& touch, const Vec3& start, const Vec3& direction, double near,
                                     double beyond) const {
-    // A grazing ball comes nearer by less and less; it then moves on by this share of its radius.
+    // The steps of a grazing ball become ever shorter. `least_step` is the shortest step, as a share of the radius.
     constexpr double least_step = 1e-4, precision = 1e-9;
     const double length = (start - touch).dot(direction) + beyond;
     u32 hint = NearestTriangle::none;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The probe that moves beside the part: which moves are free, and what a ball meets first.
+/// Simulates the probe beside the part: which moves are free, and what the ball meets first.
 ///
-/// The ball's centre moves along segments; the stylus is a capsule from c + r a to c + L a for the centre c and the
-/// machine's axis a. A clearance move is free if the ball keeps r + clearance and the stylus r_s + clearance from the
-/// mesh; an approach, if the ball keeps r from the facets that do not reach into a ball round the touch, and the stylus
-/// r_s from all facets.
+/// The ball's centre moves along segments. The stylus is a capsule from c + r a to c + L a, where c is the ball's
+/// centre and a the machine's axis. A clearance move is free if the ball's centre keeps r + clearance, and the stylus'
+/// axis r_s + clearance, from the mesh. An approach is free if the stylus' axis keeps r_s from all facets, and the
+/// ball's centre keeps r from the facets that do not reach into a ball around the touch.
 
 #include "scanmill/data/probes.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
@@ -25,18 +25,18 @@ struct FirstContact {
 
 class Machine {
 public:
-    /// Pre: a mesh with triangles, finite positions of their vertices. `mesh` is not kept.
+    /// Pre: the mesh has triangles, and their vertices are finite. `mesh` is not kept.
     Machine(const TriangleMesh& mesh, const Probe& probe, unsigned threads);
 
     bool is_move_free(const Vec3& from, const Vec3& to) const;
-    /// The approach of a ball from `start` to `end`; `near` is the radius round `touch` within which facets count as
-    /// those that are touched.
+    /// Whether the approach of a ball from `start` to `end` is free. Facets within the distance `near` of `touch` are
+    /// those to be touched.
     bool is_approach_free(const Vec3& touch, const Vec3& start, const Vec3& end, double near) const;
 
-    /// Moves the ball from `start` against `direction` by its distance from the mesh, until they meet, and then the
-    /// stylus along the same way. `edge` if the ball meets a point within `near` of the touch, and the stylus nothing;
-    /// `missed` if the centre passes the touch by more than `beyond`. Independent of the functions above: only
-    /// distances of points decide for the ball.
+    /// Moves the ball from `start` against `direction`. Each step is as long as the ball's distance from the mesh,
+    /// until they meet. The stylus is then moved along the same way. The contact is `edge` if the ball meets a point
+    /// within `near` of the touch and the stylus meets nothing. It is `missed` if the centre passes the touch by more
+    /// than `beyond`. This function is independent of those above: only distances of points decide for the ball.
     FirstContact first_contact(const Vec3& touch, const Vec3& start, const Vec3& direction, double near,
                                double beyond) const;
 
@@ -44,7 +44,7 @@ public:
     /// to the axis, r + clearance above the highest vertex.
     Vec3 lifted(const Vec3& centre) const;
     bool is_lift_free(const Vec3& centre) const { return is_move_free(centre, lifted(centre)); }
-    /// Above the middle of the part's box, on the plane.
+    /// The point of the clearance plane above the middle of the part's box.
     Vec3 home() const { return home_; }
     double diagonal() const { return diagonal_; }
     const TriangleTree& mesh() const { return tree_; }

@@ -106,7 +106,7 @@ void Pairs::find_runs(u32 line_number) {
         const u32 next = line_matched(number);
         return matched != none && next != none && matched != next;
     };
-    u32 first = 0;  // a closed line begins where a run does
+    u32 first = 0;  // a closed line is walked from the beginning of a run
     for (u32 i = 0; i < line.segments(); ++i) {
         const u32 before = number_of((i + line.segments() - 1) % line.segments());
         if (line.stops[i] || !is_member(before) || ends_between(line_matched(before), number_of(i))) {
@@ -133,7 +133,7 @@ void Pairs::find_runs(u32 line_number) {
 }
 
 void Pairs::pair_runs() {
-    std::map<std::pair<u32, u32>, std::pair<double, double>> matched;  // by pair of runs: the matched lengths
+    std::map<std::pair<u32, u32>, std::pair<double, double>> matched;  // matched lengths in both runs, by pair of runs
     for (u32 number = 0; number < segments_.size(); ++number) {
         if (matches_[number] == none) continue;
         const u32 run = run_of_[number], other = run_of_[matches_[number]];

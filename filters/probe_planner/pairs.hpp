@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Pairs of boundary lines along one edge: reference_points.hpp states the rules.
+/// Finds pairs of boundary lines along one edge. reference_points.hpp states the rules.
 
 #include <map>
 #include <optional>
@@ -12,29 +12,30 @@
 
 namespace scanmill::probing {
 
-/// A segment of a line by the numbers of both.
+/// A segment, by the indices of its line and of the segment in the line.
 struct SegmentIndex {
     u32 line, segment;
 };
 
-/// Consecutive boundary segments along one edge: with a normal on both sides, or with a match.
+/// Consecutive boundary segments of one line. Each has a normal on both sides, or a match.
 struct Run {
-    std::vector<u32> segments;  ///< by their numbers among all boundary segments
+    std::vector<u32> segments;  ///< numbers among all boundary segments
     double length = 0;
 };
 
-/// Boundary segments are numbered, line after line. Two of them match if they lie along one edge: of region-grow's two
-/// patches at an edge at least one has the normal of the other beyond its boundary.
+/// Finds boundary segments that match, that is, lie along one edge of the part. Two patches of region-grow end at such
+/// an edge. At least one of them has the other patch's normal beyond its boundary. Boundary segments are numbered line
+/// after line.
 class Pairs {
 public:
-    /// Cost: O(n log n) in the segments, if these are about equally long.
+    /// Cost: O(n log n) for n segments of about equal length.
     Pairs(const std::vector<Line>& lines, const Context& context);
 
     std::size_t count() const { return paired_lines_.size(); }
     const std::optional<SegmentIndex>& partner(u32 line, u32 segment) const { return partners_[line][segment]; }
     bool is_left_out(u32 line, u32 segment) const { return left_out_[line][segment]; }
 
-    /// The largest distance between the middles of segments of two lines that match: twice the median segment length.
+    /// The largest distance between the middles of matching segments of two lines: twice the median segment length.
     double reach_of(u32 one, u32 other) const;
 
 private:
@@ -53,7 +54,7 @@ private:
 
     const std::vector<Line>& lines_;
     std::vector<SegmentIndex> segments_;  ///< of boundaries, line after line
-    std::vector<u32> first_segment_;  ///< by line
+    std::vector<u32> first_segment_;  ///< by line: number of its first boundary segment
     std::vector<std::vector<double>> sorted_lengths_;  ///< by line
     std::vector<Run> runs_;
     std::vector<u32> run_of_, matches_;  ///< by number of a boundary segment

@@ -29,9 +29,9 @@ namespace {
 using namespace probing;
 
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-/// Angles and cosines that exceed a limit by this do not, so that rounding does not exclude axis-parallel approaches.
+/// Tolerance of limits for angles and cosines, so that rounding does not exclude axis-parallel approaches.
 constexpr double rounding = 1e-9;
-/// Tried positions of T for each touch.
+/// Number of positions of T to try for each touch.
 constexpr int false_trials = 1000;
 
 struct Settings {
@@ -61,18 +61,19 @@ Settings settings_of(const ProbePlannerParams& params) {
     probe.radius = require_length("radius", params.radius, false);
     settings.error = require_length("scanner-error", params.scanner_error, true);
     if (!(settings.error < probe.radius))
-        throw Error("scanner-error is {} u, radius {} u: a ball that is not larger than the error cannot be guided",
-                    number_text(settings.error), number_text(probe.radius))
+        throw Error(
+            "scanner-error is {} u and radius is {} u: the ball must be larger than the error to meet the edge first",
+            number_text(settings.error), number_text(probe.radius))
             .hint("use a larger ball, or a finer scan and smaller voxels with a smaller scanner-error");
     probe.clearance = length_or("clearance", params.clearance, probe.radius, true);
     probe.stylus_radius = length_or("stylus-radius", params.stylus_radius, 0.6 * probe.radius);
     if (!(probe.stylus_radius < probe.radius))
-        throw Error("stylus-radius is {} u, radius {} u: the stylus is as thick as the ball",
+        throw Error("stylus-radius is {} u and radius is {} u: the stylus must be thinner than the ball",
                     number_text(probe.stylus_radius), number_text(probe.radius))
             .hint("the default is 0.6 radius");
     probe.stylus_length = length_or("stylus-length", params.stylus_length, 20 * probe.radius);
     if (!(probe.stylus_length > probe.radius))
-        throw Error("stylus-length is {} u, radius {} u: the stylus ends inside the ball",
+        throw Error("stylus-length is {} u and radius is {} u: the stylus ends inside the ball",
                     number_text(probe.stylus_length), number_text(probe.radius))
             .hint("stylus-length is measured from the ball's centre; the default is 20 radius");
     settings.spacing = require_length("spacing", params.spacing, false);
@@ -94,7 +95,7 @@ Settings settings_of(const ProbePlannerParams& params) {
             .hint("2 measures an edge across the approach, too");
     settings.two_directions = params.directions == 2;
     if (settings.two_directions && settings.approach)
-        throw Error("directions: 2 chooses both approaches; approach gives one")
+        throw Error("`directions: 2` chooses two approaches, but `approach` gives one")
             .hint("leave out approach, or use directions: 1");
     using Features = ProbePlannerParams::Features;
     const auto takes = [&](Features kind) { return params.features == Features::all || params.features == kind; };
@@ -102,7 +103,7 @@ Settings settings_of(const ProbePlannerParams& params) {
     return settings;
 }
 
-/// The mesh relative to the origin of the features.
+/// Returns the mesh relative to the origin of the features.
 TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
     require_triangles(mesh, "collisions need at least 1");
     TriangleMesh moved;
@@ -115,7 +116,7 @@ TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
 void require_outward(const TriangleMesh& mesh) {
     const double volume = signed_volume(mesh.positions, mesh.triangles), diagonal = surface_box(mesh).diagonal();
     if (volume >= -rounding * diagonal * diagonal * diagonal || !topology(mesh).closed) return;
-    throw Error("the mesh is inside out: it encloses {:.4g} {}3, so that every convex edge is concave", volume,
+    throw Error("the mesh is inside out: its volume is {:.4g} {}3, so that its convex edges count as concave", volume,
                 symbol(mesh.frame.unit))
         .hint("`repair` turns a closed mesh outwards; find the features on its result");
 }
@@ -129,7 +130,8 @@ void require_on_mesh(const ReferencePoints& references, const TriangleTree& mesh
         if (distance <= settings.probe.radius + settings.error + 1.5 * point.segment_length) return;
         least = std::min(least, distance);
     }
-    throw Error("the lines are not on the mesh: the nearest is {:.4g} {} away", least, symbol(unit))
+    throw Error("the lines are not on the mesh: the nearest reference point is {:.4g} {} away from it", least,
+                symbol(unit))
         .hint("wire the mesh on which the features were found, in the same position; `apply-transform` moves either");
 }
 
@@ -155,7 +157,7 @@ public:
         touch_.assumed = reference.assumed;
     }
 
-    /// One touch, or two from different directions.
+    /// Returns one touch, or two from different directions.
     std::vector<ProbeTouch> plan() {
         if (!(reference_.interior_angle < pi - rounding)) return refused(ProbeReason::concave);
         range_ = range_of_disc(reference_.interior_angle, settings_.probe.radius, settings_.error);
@@ -180,8 +182,8 @@ public:
         return refused(reason);
     }
 
-    /// Sets the touch's false share: the share of random positions of T, uniform in the disc of the scanner's error or
-    /// on the left face, for which a face is met first.
+    /// Sets the touch's false share: the share of random positions of T for which the ball meets a face first. The
+    /// positions are uniform in the disc of the scanner's error or on the left face.
     static void try_positions(const Settings& settings, const ReferencePoint& reference, ProbeTouch& touch,
                               Random random) {
         const EdgeFirst edge_first(touch.interior_angle, settings.probe.radius, touch.phi);
@@ -209,7 +211,7 @@ private:
         return {touch_};
     }
 
-    /// The best first: from the preferred angle outwards in steps of 1 degree.
+    /// Returns the angles to try, the best first: from the preferred angle outwards in steps of 1 degree.
     std::vector<double> candidate_angles() const {
         if (settings_.approach) return {*settings_.approach};
         const bool by_disc = !is_empty(range_);
@@ -238,7 +240,7 @@ private:
         return direction(phi).dot(settings_.probe.axis) >= settings_.least_cosine;
     }
 
-    /// Empty if the probe would meet the part elsewhere.
+    /// Plans a touch at the angle phi. Empty if the probe would meet the part elsewhere.
     std::optional<ProbeTouch> touch_at(double phi) const {
         const double r = settings_.probe.radius;
         ProbeTouch touch = touch_;
@@ -257,8 +259,8 @@ private:
         return touch;
     }
 
-    /// Whether a ball that is met in the direction `normal` rests on the left or right face, as it does where another
-    /// part continues the face beyond the line.
+    /// Whether the ball rests on the left or right face, as it does where another part continues the face beyond the
+    /// line. `normal` is the direction from the contact to the ball's centre.
     bool rests_on_face(const Vec3& normal) const {
         const double cosine_1 = 0.99984769515639127;
         return reference_.left_normal.dot(normal) > cosine_1 ||
@@ -292,7 +294,7 @@ private:
     const Settings& settings_;
     const Machine& machine_;
     const ReferencePoint& reference_;
-    const double edge_reach_;  ///< from T to the edge in the mesh, at most
+    const double edge_reach_;  ///< largest distance from T to the edge in the mesh
     const double near_, beyond_;
     Vec3 bisector_, across_;
     AngleRange range_, known_range_;
@@ -340,10 +342,10 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
     context.metric("travel", result.travel, Unit::length);
     context.metric("edge-roughness", result.edge_roughness, Unit::length);
     if (result.edge_roughness > settings.error)
-        context.warn(fmt::format(
-            "the lines are rough by {:.6g} u (95 % quantile), more than scanner-error, {:.6g} u: edges may be missed; "
-            "raise scanner-error, or scan more finely",
-            result.edge_roughness, settings.error));
+        context.warn(
+            fmt::format("the edge roughness of the lines is {:.6g} u (95 % quantile), above scanner-error, {:.6g} u: "
+                        "touches may miss edges; raise scanner-error, or scan more finely",
+                        result.edge_roughness, settings.error));
     if (result.unreachable == touches)
         context.doubt(fmt::format("none of {} can be made: {} concave, {} too narrow, {} too tilted and {} obstructed",
                                   count_text(touches, "touch", "touches"), result.concave, result.too_narrow,

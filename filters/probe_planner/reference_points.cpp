@@ -23,7 +23,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t most_points = 1'000'000;
 
-/// How far a chord of a line that turns to the right lies beyond it.
+/// Returns how far a segment of a line that turns right lies beyond the line's curve; 0 if it does not turn right.
 double sagitta(const Line& line, const Window& window, u32 segment, const Vec3& point, const Vec3& normal) {
     const Vec3 before = point - window.start, after = window.end - point;
     if (!(normal.dot(before.cross(after)) < 0)) return 0;
@@ -104,7 +104,7 @@ struct Part {
 };
 
 std::vector<Part> parts_of(const Line& line, u32 number, const Pairs& pairs) {
-    u32 first = 0;  // where a part begins, if there is more than one
+    u32 first = 0;  // the segment with which a part begins, if there is more than one part
     bool is_whole = true;
     for (u32 i = 0; i < line.segments(); ++i) {
         if (!pairs.is_left_out(number, i)) continue;
@@ -153,7 +153,7 @@ double radius_of_hole(const Line& line) {
     return is_round ? mean : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Replaces the faces and the edge of points at which the mesh shows others.
+/// Replaces the faces and the edge of a point if the mesh shows other ones there.
 void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, double error, double radius,
                  const Context& context) {
     constexpr double segments_near = 2, segments_apart = 1.5;
@@ -166,7 +166,7 @@ void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, 
             const double size =
                 std::max(point.segment_length, mean_edge_near(mesh, point.position, point.segment_length));
             const Vec3& right = point.assumed ? point.left_normal : point.right_normal;
-            // Farther than the ball reaches there are other edges.
+            // Beyond the reach of the ball, the mesh has other edges.
             const double reach = std::min(size, radius);
             const auto faces = edge_faces(mesh, {point.position, point.tangent, point.left_normal, right},
                                           segments_near * reach + error, segments_apart * reach + error);
@@ -199,11 +199,11 @@ bool is_same_edge(const ReferencePoint& a, const ReferencePoint& b, double error
            (agree(b.left_normal, b.right_normal) || agree(b.right_normal, b.left_normal));
 }
 
-/// Leaves out points of other lines on the same edge that are nearer than three quarters of a spacing; those of the
-/// longest chain stay. `lengths`: the chains' lengths.
+/// Leaves out points that are on the same edge as a point of a longer chain and nearer to it than three quarters of a
+/// spacing. `lengths`: lengths of the chains.
 ///
-/// Points at random, each kept if no kept one is nearer than x spacings, are 0.7476 / x per spacing in the end (Rényi
-/// 1958): 1.0 for three quarters, 1.5 for a half. Gaps are at most twice as long.
+/// Consider points at random, each kept if no kept point is nearer than x spacings. In the end there are 0.7476 / x
+/// points per spacing (Rényi 1958): 1.0 for x = 3/4, 1.5 for x = 1/2. Gaps are at most 2 x spacings long.
 void leave_out_repeated(ReferencePoints& result, std::span<const double> lengths, double spacing, double error,
                         const Context& context) {
     if (result.chains.size() < 2) return;
@@ -248,7 +248,7 @@ void leave_out_repeated(ReferencePoints& result, std::span<const double> lengths
     result.chains = std::move(chains);
 }
 
-/// Distances of the line's vertices from quadratics through their neighbours.
+/// Appends the distances of the line's vertices from quadratics that fit the vertices around them.
 void add_roughness(const Line& line, std::vector<double>& distances) {
     constexpr int beside_each = 4;
     constexpr u32 least = 16;

@@ -50,7 +50,7 @@ public:
 
 private:
     const Vec3& start(u32 row) const { return touches_[row].start; }
-    /// Where the probe comes from before the passage.
+    /// Position from which the probe comes to the passage with index `at`.
     const Vec3& before(std::size_t at) const { return at == 0 ? home_ : start(passages_[at - 1].last_row()); }
     /// Length of the way from a touch to the next passage; 0 at the end of the tour.
     double to_next(u32 row, std::size_t next) const {

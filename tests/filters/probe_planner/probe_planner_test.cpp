@@ -475,7 +475,7 @@ TEST(ProbePlanner, RoughLines_AreWarnedOf) {
     EXPECT_GT(result.edge_roughness, 0.15);
     EXPECT_LT(result.edge_roughness, 0.4);
     ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_THAT(result.warnings[0], testing::HasSubstr("more than scanner-error, 0.1 u"));
+    EXPECT_THAT(result.warnings[0], testing::HasSubstr("above scanner-error, 0.1 u"));
     EXPECT_THAT(planned(disc, probe_of(2, 0.5, 5)).warnings, IsEmpty());
 }
 

@@ -37,20 +37,21 @@ TEST(ProbePlannerRefusals, Parameters) {
     EXPECT_EQ(refusal_of_params([](P& p) { p.radius = nan; }), "radius must be above 0; it is nan u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = -1; }), "scanner-error must be at least 0; it is -1 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = 1; }),
-              "scanner-error is 1 u, radius 1 u: a ball that is not larger than the error cannot be guided");
-    EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = 1.5; }),
-              "scanner-error is 1.5 u, radius 1 u: a ball that is not larger than the error cannot be guided");
+              "scanner-error is 1 u and radius is 1 u: the ball must be larger than the error to meet the edge first");
+    EXPECT_EQ(
+        refusal_of_params([](P& p) { p.scanner_error = 1.5; }),
+        "scanner-error is 1.5 u and radius is 1 u: the ball must be larger than the error to meet the edge first");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 0; }), "spacing must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 1e-9; }),
               "a spacing of 1e-09 u gives more than 1000000 touches");
     EXPECT_EQ(refusal_of_params([](P& p) { p.clearance = -0.5; }), "clearance must be at least 0; it is -0.5 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.retract = 0; }), "retract must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_radius = 1; }),
-              "stylus-radius is 1 u, radius 1 u: the stylus is as thick as the ball");
+              "stylus-radius is 1 u and radius is 1 u: the stylus must be thinner than the ball");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_radius = 0; }), "stylus-radius must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_length = 0; }), "stylus-length must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_length = 0.5; }),
-              "stylus-length is 0.5 u, radius 1 u: the stylus ends inside the ball");
+              "stylus-length is 0.5 u and radius is 1 u: the stylus ends inside the ball");
     EXPECT_EQ(refusal_of_params([](P& p) { p.approach = Angle::degrees(91); }),
               "approach must be from -90 to 90 deg; it is 91 deg");
     EXPECT_EQ(refusal_of_params([](P& p) { p.max_tilt = Angle::degrees(-1); }),
@@ -65,7 +66,7 @@ TEST(ProbePlannerRefusals, Parameters) {
                   p.directions = 2;
                   p.approach = Angle::degrees(5);
               }),
-              "directions: 2 chooses both approaches; approach gives one");
+              "`directions: 2` chooses two approaches, but `approach` gives one");
 }
 
 /// One line of three segments along y with a crease's normals, and a square boundary.
@@ -91,7 +92,7 @@ TEST(ProbePlannerRefusals, PartsWithoutLines) {
     const Error error = refusal(lines_of(part()), part(), holes);
     EXPECT_EQ(error.sentence(),
               "there is no line to probe: the features have 0 outer boundaries, 0 holes and 12 creases");
-    EXPECT_EQ(error.hint(), "features: all takes every line");
+    EXPECT_EQ(error.hint(), "`features: all` probes every line");
     EXPECT_EQ(refusal(two_lines(), part(), holes).sentence(),
               "there is no line to probe: the features have 1 outer boundary, 0 holes and 1 crease");
 }
@@ -135,7 +136,8 @@ TEST(ProbePlannerRefusals, AMeshInsideOut) {
     const ProbePlannerParams params = probe_of(1, 0.1, 2);
     const TriangleMesh wrong = reversed(part());
     const Error error = refusal(lines_of(wrong), wrong, params);
-    EXPECT_EQ(error.sentence(), "the mesh is inside out: it encloses -1000 u3, so that every convex edge is concave");
+    EXPECT_EQ(error.sentence(),
+              "the mesh is inside out: its volume is -1000 u3, so that its convex edges count as concave");
     EXPECT_EQ(error.hint(), "`repair` turns a closed mesh outwards; find the features on its result");
     const TriangleMesh hollow = joined(part(), reversed(box(Vec3::Constant(3), Vec3::Constant(7), 2)));
     EXPECT_EQ(planned(hollow, params).concave, 24u) << "the edges of the cavity; the block itself is not inside out";
@@ -148,7 +150,7 @@ TEST(ProbePlannerRefusals, LinesThatAreNotOnTheMesh) {
     const ProbePlannerParams params = probe_of(1, 0.1, 2);
     const TriangleMesh far = box(Vec3(110, 0, 0), Vec3(120, 10, 10), 2);
     EXPECT_EQ(refusal(lines_of(far), part(), params).sentence(),
-              "the lines are not on the mesh: the nearest is 100 u away");
+              "the lines are not on the mesh: the nearest reference point is 100 u away from it");
     const TriangleMesh both = joined(part(), far);
     EXPECT_EQ(planned(lines_of(both), part(), params).plan.touches.size(), 120u) << "some are";
 }
