@@ -13,8 +13,8 @@ namespace scanmill::growing {
 
 namespace {
 
-constexpr double opposite_cosine = -0.5;  // of 120 degrees
-/// Share of the distance that is along the normal: the opposite sheet is across, not beside.
+constexpr double opposite_cosine = -0.5;  // cosine of 120 degrees
+/// Least share of the distance to the opposite sheet that is along the normal: the sheet is across, not beside.
 constexpr double least_across = 0.7;
 
 struct OppositeSheet {
@@ -28,7 +28,7 @@ class OppositeSheets {
 public:
     OppositeSheets(const Surface& surface, const Components& components) : surface_(surface), components_(components) {}
 
-    /// The nearest opposite sheet; without one, the distance is the search range.
+    /// Returns the nearest opposite sheet. If there is none, its distance is the search range.
     OppositeSheet nearest(u32 point) {
         const double voxel = surface_.search_radius[point] / radius_in_voxels;
         OppositeSheet best{thin_in_voxels * voxel, voxel};
@@ -41,7 +41,7 @@ public:
             const double distance = offset.norm();
             if (std::abs(offset.dot(surface_.normals[point])) < least_across * distance) continue;
             best.distance = std::min(best.distance, distance);
-            break;  // they are sorted by distance
+            break;  // found_ is sorted by distance
         }
         return best;
     }

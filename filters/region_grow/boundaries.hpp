@@ -17,18 +17,18 @@ struct ThinParts {
     double least = 0, voxel = 0;
 };
 
-/// The opposite sheet of a boundary point is the nearest point of the surface whose normal differs by more than 120
-/// degrees, and that lies across the surface rather than beside the point. Beyond a sharp fold it may be near along the
-/// surface, too. The relative orientation of two components is not known, so between them equal normals count as well.
-/// The voxel size follows from the search radius; ties: the smaller one. With given normals
-/// whose signs count, no loop is counted.
+/// Finds loops at thin parts. The opposite sheet of a boundary point is the nearest surface point that lies across the
+/// surface, rather than beside the point, and whose normal differs by more than 120 degrees. Beyond a sharp fold, it
+/// may be near along the surface, too. The relative orientation of two components is not known, so between components
+/// equal normals count as well. The voxel size follows from the search radius; ties: the smaller one. If given normals
+/// have signs that count, no loop is counted.
 ///
 /// Pre: every vertex has one fan; search radii follow from voxel sizes. Cost: a radius search per boundary point.
 ThinParts find_thin_parts(const Surface& surface, const Components& components, const Context& context);
 
-/// Boundary points beside a boundary point with an opposed normal in the same plane: the surface ends there only
-/// because of the given normals. 0 where nearly all of them lie on one side. Pre: the signs of the normals count. Cost:
-/// linear.
+/// Counts the boundary points beside a boundary point with an opposed normal in the same plane. The surface ends there
+/// only because of the given normals. Returns 0 if nearly all opposed neighbours are behind, or nearly all in front.
+/// Pre: the signs of the normals count. Cost: linear.
 std::size_t points_at_seams(const Surface& surface);
 
 }  // namespace scanmill::growing

@@ -15,9 +15,9 @@ namespace scanmill::growing {
 
 namespace {
 
-constexpr double opposed_cosine = -0.9;  // of 154 degrees
-/// Heights along the normal, as shares of the distance to the neighbour. A neighbour on the same surface is at most
-/// as high as the first; heights below the second are rounding and curvature.
+constexpr double opposed_cosine = -0.9;  // cosine of 154 degrees
+/// Heights of a neighbour along the normal, as shares of its distance. A neighbour on the same surface is at most
+/// `most_height` high. Heights below `least_height` come from rounding and curvature.
 constexpr double most_height = 0.3;
 constexpr double least_height = 0.01;
 
@@ -88,7 +88,7 @@ void propagate_signs(const Neighbourhoods& neighbourhoods, std::vector<bool> kno
 bool lies_in_surface(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point, const Vec3& given,
                      const Vec3& principal) {
     constexpr double least_cosine = 0.5;  // cosine of the 60 degrees that the messages name
-    constexpr double least_share = 0.25;  // a normal tilted by that in an even neighbourhood has 3/8
+    constexpr double least_share = 0.25;  // a normal tilted by 60 degrees has 3/8 in an even neighbourhood
     if (std::abs(given.dot(principal)) >= least_cosine) return false;
     double along = 0, whole = 0;
     for (u32 other : neighbourhoods.of(point)) {
@@ -99,8 +99,8 @@ bool lies_in_surface(const DistinctPoints& points, const Neighbourhoods& neighbo
     return along > least_share * whole;
 }
 
-/// Refuses normals most of which lie in the surface, and warns when many do. Where noise hides the surface, half of all
-/// correct normals are that far from the principal ones, so the limit for a refusal is above that.
+/// Refuses the normals if most of them lie in the surface, and warns if many do. Where noise hides the surface, half of
+/// all correct normals are that far from the principal ones. The limit for a refusal is higher than that.
 void require_across(std::size_t lying, std::size_t given, Context& context) {
     const double share = static_cast<double>(lying) / static_cast<double>(given);
     const std::string found = fmt::format(
@@ -148,10 +148,8 @@ GivenNormals take_given_normals(const PointCloud& cloud, const DistinctPoints& p
     const bool are_mixed = opposed.are_mixed(count);
     if (are_mixed)
         context.warn(fmt::format(
-            "{} of {} normals of the column 'normal' are opposed to that of their nearest neighbour, as normals "
-            "without "
-            "orientation are, or those of two sides that touch; their signs only decide which way most of the surface "
-            "faces",
+            "{} of {} normals of the column 'normal' are opposed to that of their nearest neighbour: they have no "
+            "orientation, or two sides touch; their signs only decide which way most of the surface faces",
             opposed.count, count));
     if (!are_few && !are_mixed) {
         propagate_signs(neighbourhoods, given, normals.directions);

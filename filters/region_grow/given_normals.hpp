@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The normals that are given with the cloud.
+/// Uses the normals that are given with the cloud.
 
 #include <vector>
 
@@ -11,29 +11,31 @@
 namespace scanmill::growing {
 
 struct GivenNormals {
-    /// A triangle must agree with the sign of its points' normals.
+    /// Whether a triangle must agree with the signs of its points' normals.
     bool signs_count = false;
-    /// Where signs do not count: per point the given normal, zero where there is none. Empty otherwise.
+    /// If signs do not count: per point the given normal, zero if there is none. Otherwise empty.
     Array<Vec3> doubtful;
 };
 
 /// Replaces the principal normals by those of the column `normal`, if there is one. If several rows have one position,
 /// the first normal by x, y, z is used. A point without a finite non-zero normal keeps its principal one, with the sign
-/// of the given ones near it, and a warning gives the number of such points. Signs are ignored, with a warning, where
-/// more than half of the points have no normal, and where signs are mixed (see OpposedNormals). Throws Error when the
-/// column is not three numbers wide, and when more than three quarters of the normals are more than 60 degrees from
-/// the principal ones, in directions in which their neighbours lie; above a quarter a warning is given. Cost: linear.
+/// of the given ones near it. A warning gives the number of such points. Signs are ignored, with a warning, if more
+/// than half of the points have no normal, or if signs are mixed (see OpposedNormals). Throws Error if the column is
+/// not three numbers wide. A normal lies in the surface if it is more than 60 degrees from the principal one, in a
+/// direction in which the neighbours lie. Throws Error if more than three quarters of the normals do, and warns above a
+/// quarter. Cost: linear.
 GivenNormals take_given_normals(const PointCloud& cloud, const DistinctPoints& points,
                                 const Neighbourhoods& neighbourhoods, PointNormals& normals, Context& context);
 
-/// Neighbours whose normals differ by over 154 degrees; ridges and grooves above 26 degrees have none.
+/// Whether the normals of two neighbours differ by more than 154 degrees. Ridges and grooves of more than 26 degrees
+/// have no such neighbours.
 bool are_opposed(const Vec3& one, const Vec3& other);
 
-/// Counts points whose normal is opposed to that of their nearest neighbour, by where the neighbour lies.
+/// Counts points whose normal is opposed to that of their nearest neighbour, by the position of this neighbour.
 struct OpposedNormals {
     std::size_t count = 0;
-    /// Behind, as on the other side of a sheet; in front, as across a slit; and nearly in the point's plane (within 17
-    /// degrees), as on the same surface.
+    /// Numbers of points whose neighbour is behind, as on the other side of a sheet; in front, as across a slit; and
+    /// nearly in the point's plane (within 17 degrees), as on the same surface.
     std::size_t behind = 0, in_front = 0, beside = 0;
 
     /// Nearly all neighbours are behind, or nearly all in front: they belong to the other side of a thin sheet or slit.

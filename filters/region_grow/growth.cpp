@@ -52,7 +52,7 @@ private:
     }
 
     void propagate(std::vector<u32>& oriented) {
-        for (std::size_t i = 0; i < oriented.size(); ++i)  // grows in the loop
+        for (std::size_t i = 0; i < oriented.size(); ++i)  // `oriented` grows in the loop
             for (u32 other : surface_.neighbourhoods.of(oriented[i]))
                 if (is_open(other)) {
                     orient(oriented[i], other);
@@ -146,7 +146,7 @@ void Growth::grow(const Limits& limits) {
 }
 
 SuitablePoint Growth::choose(HalfEdge edge, const Limits& limits, bool wide, bool in_space) {
-    // Not per triangle: most choices may fail, and with a large search radius each takes long.
+    // Checked per choice, not per triangle: most choices may fail, and with a large search radius each takes long.
     if (choices_++ % 64 == 0) context_.check_cancelled();
     return chooser_.choose(edge.from, edge.to, limits, wide, in_space);
 }
@@ -167,7 +167,7 @@ void Growth::extend(HalfEdge edge, std::size_t queue, const Limits& limits) {
 
 void Growth::retry(std::size_t round) {
     std::vector<ParkedEdge> left;
-    for (std::size_t i = 0; i < parked_.size(); ++i) {  // grows in the loop
+    for (std::size_t i = 0; i < parked_.size(); ++i) {  // `parked_` grows in the loop
         auto [edge, tried] = parked_[i];
         for (; tried <= round; ++tried) {
             if (surface_.fans.right_of(edge.from, edge.to) != invalid_index) break;

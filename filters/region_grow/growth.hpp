@@ -2,10 +2,10 @@
 #pragma once
 /// The growth: triangles are added at boundary edges until no edge can be continued.
 ///
-/// Edges wait in queues: first those that are certain, then those where the surface has a large dihedral deviation or
-/// candidates were rejected, then those whose neighbour lists were too short. Edges without a suitable point are parked
-/// and retried under relaxed limits. A triangle cancels opposite half-edges; the thesis's loops, split and merged, are
-/// the half-edges that remain.
+/// Edges wait in three queues. The first holds certain edges. The second holds edges where the surface has a large
+/// dihedral deviation or candidates were rejected. The third holds edges whose neighbour lists were too short. Edges
+/// without a suitable point are parked and retried under relaxed limits. A triangle cancels opposite half-edges. The
+/// half-edges that remain are the loops of the thesis, split and merged.
 
 #include <array>
 #include <deque>
@@ -18,10 +18,10 @@ namespace scanmill::growing {
 
 class Growth {
 public:
-    /// `limits`: the given ones, then the relaxed ones in order.
+    /// `limits`: the given limits, then the relaxed ones in order.
     Growth(Surface& surface, Score score, std::vector<Limits> limits, Context& context);
 
-    /// Forms the seed triangle at the point and grows from it to the end. False when there is no seed triangle.
+    /// Forms the seed triangle at the point and grows from it to the end. False if there is no seed triangle.
     bool start(u32 point);
 
 private:
@@ -39,7 +39,7 @@ private:
     /// Whether the point lies over a triangle of the surface that faces along the normal.
     bool is_covered(u32 point, const Vec3& normal) const;
     void add(const Triangle& triangle, Pass pass);
-    /// Empties the queues.
+    /// Continues edges until the queues are empty.
     void grow(const Limits& limits);
     /// The edge's suitable point. Checks for cancellation now and then.
     SuitablePoint choose(HalfEdge edge, const Limits& limits, bool wide, bool in_space);
@@ -58,14 +58,14 @@ private:
     std::size_t next_report_ = 0, choices_ = 0;
 };
 
-/// Grows component after component until no unused point starts one: first from `start`, or by default from the point
-/// with the least surface variation (ties: the lowest number), then from the unused points in that order. False
-/// when nothing can start at `start`.
+/// Grows component after component until no unused point starts one. The first component starts at `start`, or by
+/// default at the point with the least surface variation (ties: the lowest number). Further components start at the
+/// unused points in that order. False if nothing can start at `start`.
 ///
-/// Before each further component, unused points near the surface, and those near them, take over its orientation. A
-/// normal is propagated along an edge by reflection: n' has the sign of n minus twice its component along the edge,
-/// which is right around corners. `groups` returns per point a number that is equal for points whose orientations
-/// depend on each other in this way, or invalid_index.
+/// Before each further component, the orientation of the surface is propagated to unused points near it, and from these
+/// to unused points near them. Along an edge, a normal is propagated by reflection: n' gets the sign of n minus twice
+/// its component along the edge. This is right around corners, too. `groups` returns a number per point. It is equal
+/// for points whose orientations depend on each other in this way, or invalid_index.
 bool grow_all_components(Surface& surface, Growth& growth, std::optional<u32> start, Array<u32>& groups);
 
 }  // namespace scanmill::growing

@@ -13,13 +13,13 @@ namespace {
 
 using Coordinates = std::array<double, 3>;
 
-/// The same for both directions.
+/// Returns the ends of a segment, in the same order for both directions.
 std::pair<Coordinates, Coordinates> segment(const Vec3& a, const Vec3& b) {
     const auto coordinates = [](const Vec3& p) { return Coordinates{p.x(), p.y(), p.z()}; };
     return std::minmax({coordinates(a), coordinates(b)});
 }
 
-/// Adds the normals of their triangles to the entries of these vertices.
+/// Adds the unit normals of the triangles at each vertex in `normals` to its entry.
 void add_normals(const TriangleMesh& mesh, std::map<u32, Vec3>& normals) {
     std::vector<bool> wanted(mesh.positions.size(), false);
     for (const auto& [vertex, normal] : normals) wanted[vertex] = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The edges of patches, where a sharp edge ends the growth; the sharp edges of the mesh, and the normals beyond them.
+/// Finds the edges of patches, where a sharp edge ends the growth. Sets the sharp edges of the mesh and the normals
+/// beyond them.
 
 #include "region_grow/suitable_point.hpp"
 #include "scanmill/filter/context.hpp"
@@ -16,18 +17,19 @@ struct PatchEdge {
     u32 beyond;
 };
 
-/// Boundary edges for which a boundary point, not a neighbour of theirs, satisfies all limits but `normal_cosine` to
-/// the edge's triangle: nothing else ended the patch. In the order of the triangles, with their orientation. Cost:
-/// linear in the boundary.
+/// Finds the boundary edges where only the angle ended the patch. A boundary point there, not a neighbour of the edge's
+/// ends, satisfies all limits but `normal_cosine` to the edge's triangle. The edges have the order and the orientation
+/// of their triangles. Cost: linear in the boundary.
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context);
 
-/// Sets the mesh's sharp edges: the creases of `lines`, and patch edges. Pre: `lines` of `finished`. Cost: linear, and
-/// a sort of the sharp edges.
+/// Sets the mesh's sharp edges: the creases of `lines`, and the patch edges. Pre: `lines` belong to `finished`. Cost:
+/// linear, and a sort of the sharp edges.
 void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges);
 
-/// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch: the mean over
-/// its triangles at the point beyond. Pre: `features` of `finished`. Cost: linear, and a search per segment.
+/// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch. This is the
+/// mean normal of the triangles at the point `beyond`. Pre: `features` belong to `finished`. Cost: linear, and a search
+/// per segment.
 void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, std::span<const PatchEdge> patch_edges);
 
 }  // namespace scanmill::growing

@@ -10,37 +10,38 @@ SCANMILL_FILTER() {
         .summary("Grows a surface over thinned points from a seed triangle; finds boundaries, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties(
-            "Equally good points: the first along a space-filling curve through the box; duplicates: the first "
-            "row, "
-            "with the smallest bin-size and the first normal by x, y, z.")
-        .not_finite("Refused, with their number and the first of them; normals are replaced instead.")
-        .in<PointCloud>("points",
-                        "Thinned: of even density, at least locally. Columns `normal` and `bin-size` are used.")
+            "Among equally good points, the first along a space-filling curve through the box is used. Duplicates "
+            "count as the first row, with the smallest bin-size and the first normal by x, y, z.")
+        .not_finite(
+            "Coordinates: refused; the message gives their number and the first one. Normals: replaced by those of the "
+            "neighbourhood.")
+        .in<PointCloud>(
+            "points", "Thinned points, of even density at least locally. The columns `normal` and `bin-size` are used.")
         .made_by("voxel-thin")
         .out<TriangleMesh>("mesh", "An oriented manifold over the points used, with its sharp edges.")
         .out<FeatureGraph>("features",
                            "Outer boundaries, holes and creases with the normals on both sides, and corners.")
         .param("min-angle", &P::min_angle, "No triangle of the first pass has a smaller angle.", at_least(0), below(60))
         .param("max-normal-angle", &P::max_normal_angle,
-               "Between the normals of triangles that share an edge; smaller values end patches at sharp edges.",
+               "Largest angle between the normals of triangles that share an edge; smaller values end patches at sharp "
+               "edges.",
                above(0), at_most(180))
-        .param(
-            "search-radius", &P::search_radius,
-            "How far an edge looks for its next point; holes wider than two thirds of it stay open. `auto` is 2 "
-            "sqrt(3) times the column `bin-size` of voxel-thin; without the column, or where the density contradicts "
-            "it, the voxel size that the local density corresponds to is used.",
-            above(0), word("auto"))
-        .param("sharp-angle", &P::sharp_angle, "Edges between triangles whose normals differ by more are creases.",
-               at_least(0), at_most(180))
+        .param("search-radius", &P::search_radius,
+               "Distance within which an edge looks for its next point; holes wider than two thirds of it stay open. "
+               "`auto` is 2 sqrt(3) times the column `bin-size` of voxel-thin. Without the column, or where the "
+               "density contradicts it, `auto` is 2 sqrt(3) times the voxel size that matches the local density.",
+               above(0), word("auto"))
+        .param("sharp-angle", &P::sharp_angle,
+               "An edge is a crease if the normals of its triangles differ by more than this.", at_least(0),
+               at_most(180))
         .param("noise", &P::noise,
-               "Standard deviation of the points' distances from the surface. Creases are found by normals of "
-               "neighbourhoods where triangles are too small for it; `auto` estimates it.",
+               "Standard deviation of the points' distances from the surface; `auto` estimates it. Where triangles are "
+               "too small for the noise, creases are found by the normals of neighbourhoods.",
                at_least(0), word("auto"))
-        .param(
-            "close-holes", &P::close_holes,
-            "Loops of at most this many edges are closed, and longer ones, up to 100 edges, that are too narrow for a "
-            "hole; 0 closes none.",
-            at_least(0), at_most(100))
+        .param("close-holes", &P::close_holes,
+               "Loops of at most this many edges are closed. Longer loops, up to 100 edges, are closed if they are too "
+               "narrow for a hole. 0 closes none.",
+               at_least(0), at_most(100))
         .choice("score", &P::score,
                 {{"circumradius", P::Score::circumradius, "The point whose circle with the edge is empty."},
                  {"midpoint", P::Score::midpoint, "The point nearest the edge's midpoint, as in Wang."}},
@@ -52,12 +53,12 @@ SCANMILL_FILTER() {
         .metric("loops", Unit::count, "Boundary loops.", headline)
         .metric("holes", Unit::count, "Boundary loops around holes.")
         .metric("thin-loops", Unit::count,
-                "Loops where two sides are less than three voxels apart, so that the surface may continue there; not "
-                "counted with a `search-radius`, nor where given normals distinguish the sides.",
+                "Loops where two sides are less than three voxels apart, so that the surface may continue there. They "
+                "are not counted with a given `search-radius`, nor where given normals distinguish the sides.",
                 smaller_is_better)
-        .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or layers.", headline,
+        .metric("unused-points", Unit::count, "Distinct points in no triangle, because of noise or layers.", headline,
                 smaller_is_better)
-        .metric("duplicates", Unit::count, "Points at the position of an earlier one.")
+        .metric("duplicates", Unit::count, "Points at the position of an earlier point.")
         .metric("known-bins", Unit::count, "Distinct points whose search radius follows from the column `bin-size`.")
         .metric("patch-edges", Unit::count, "Boundary edges beyond which the surface continues at too large an angle.",
                 smaller_is_better)
@@ -66,9 +67,9 @@ SCANMILL_FILTER() {
         .metric("noise", Unit::length, "Standard deviation of the points' distances from the surface.")
         .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
         .metric("removed-triangles", Unit::count,
-                "Triangles removed again, where a vertex had several fans or to close a hole.")
-        .metric("ambiguous", Unit::count, "Loops classified by their length, as their area does not decide.",
-                smaller_is_better)
+                "Triangles removed again, because a vertex had several fans or to close a hole.")
+        .metric("ambiguous", Unit::count,
+                "Loops that are classified by their length, because their area does not decide.", smaller_is_better)
         .metric("without-area", Unit::count, "Triangles without area, assigned to a neighbour's plane.",
                 smaller_is_better)
         .metric("relaxed-triangles", Unit::count, "Triangles formed under relaxed limits.")

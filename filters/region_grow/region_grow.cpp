@@ -47,7 +47,7 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         const double noise = params.noise->value();
         if (!(noise >= 0 && std::isfinite(noise)))
             throw Error("noise is {}; it must be at least 0", noise)
-                .hint("leave noise out to estimate it; 0 judges every triangle by itself");
+                .hint("leave noise out to estimate it; with 0, every triangle is judged by itself");
     }
     if (params.close_holes > 100)
         throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes)
@@ -62,7 +62,8 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         .hint("start at another point, on a flat and evenly sampled part, or leave start at `auto`");
 }
 
-/// Refuses a cloud without any seed triangle. Names voxels that would make one sheet of several layers.
+/// Refuses a cloud without any seed triangle. The hint gives a voxel size that would merge several layers into one
+/// sheet.
 [[noreturn]] void refuse_all(const Surface& surface, const RegionGrowParams& params, LengthUnit unit,
                              unsigned threads) {
     const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())
@@ -99,9 +100,9 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
     return limits;
 }
 
-/// Largest dihedral deviation where narrow holes are closed, in radians. From 90 degrees of max-normal-angle on, no
-/// patch ends at a sharp edge, and tips of any angle are closed; below, surfaces end where the last round of growth
-/// ends them.
+/// Largest dihedral deviation with which narrow holes are closed, in radians. If max-normal-angle is at least 90
+/// degrees, no patch ends at a sharp edge, and tips of any angle are closed. Otherwise surfaces end where the last
+/// round of growth ends them.
 double largest_dihedral(const RegionGrowParams& params) {
     const double angle = params.max_normal_angle.in_radians();
     constexpr double right_angle = std::numbers::pi / 2;
@@ -163,7 +164,8 @@ void report_unused(const RegionGrowResult& result, const Surface& surface, Conte
         context.warn(std::move(text));
 }
 
-/// Creases that the triangles make by themselves, whatever the noise. Pre: `mesh` has no declared sharp edges.
+/// Number of creases that the triangles make by themselves, without regard to noise. Pre: `mesh` has no declared sharp
+/// edges.
 std::size_t creases_of_triangles(const TriangleMesh& mesh, FeatureParams params, const FeatureLines& lines,
                                  const Context& context) {
     if (lines.counts.unreliable == 0) return lines.counts.creases;
@@ -173,17 +175,17 @@ std::size_t creases_of_triangles(const TriangleMesh& mesh, FeatureParams params,
 
 /// Creases of an object are long polylines: on the clean scans of the tests there is at most one per 80 edges. Where
 /// triangles are judged by themselves, noise makes creases of one or two edges everywhere: one per 11 edges at a noise
-/// of 0.05 % of the diagonal. A curved object with few points looks the same: 89 creases on the 951 edges of a figure
-/// eight of 317 points.
+/// of 0.05 % of the diagonal. A curved object with few points looks the same: a figure eight of 317 points has 89
+/// creases on 951 edges.
 void doubt_roughness(const RegionGrowResult& result, std::size_t creases, Context& context) {
     constexpr std::size_t edges_per_crease = 20;
     const std::size_t edges = 3 * result.mesh.triangles.size() / 2;
     constexpr std::size_t few_edges = 10'000;
     if (edges > few_edges && edges_per_crease * creases > edges)
-        context.doubt(fmt::format(
-            "the triangles by themselves make {} creases on {} edges: the surface is rough at the distance of its "
-            "points, as that of a noisy scan is; thin the scan with larger voxels, or smooth it first",
-            creases, edges));
+        context.doubt(
+            fmt::format("the triangles by themselves make {} creases on {} edges: the surface is rough at the distance "
+                        "of its points, like a noisy scan; thin the scan with larger voxels, or smooth it first",
+                        creases, edges));
 }
 
 void doubt_seams(const Surface& surface, Context& context) {
@@ -199,13 +201,12 @@ void doubt_seams(const Surface& surface, Context& context) {
 void doubt_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
-    context.doubt(fmt::format(
-        "{} of {} boundary loops {} where two sides or layers are less than {} voxels apart, the nearest {:.3g} {} "
-        "with "
-        "voxels of {:.3g} {}: the surface may continue there; use smaller voxels where the object is thin, larger ones "
-        "where the scan is noisy",
-        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_voxels, thin.least, unit, thin.voxel,
-        unit));
+    context.doubt(
+        fmt::format("{} of {} boundary loops {} where two sides or layers are less than {} voxels apart; the nearest "
+                    "are {:.3g} {} apart, with voxels of {:.3g} {}: the surface may continue there; use smaller voxels "
+                    "where the object is thin, larger ones where the scan is noisy",
+                    thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_voxels, thin.least, unit,
+                    thin.voxel, unit));
 }
 
 }  // namespace

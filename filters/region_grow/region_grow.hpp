@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Grows a surface over thinned points, triangle by triangle from a seed, until the points end. Reports its boundaries,
-/// holes and sharp edges.
+/// Grows a surface over thinned points, triangle by triangle from a seed triangle. Reports its boundaries, holes and
+/// sharp edges.
 ///
-/// Every boundary edge looks for its *suitable point*: one within the search radius, for which no angle of the new
-/// triangle is below `min_angle`, and the normal differs from that of every triangle that shares an edge by at most
-/// `max_normal_angle`; of these the one whose circle with the edge is empty, as in a Delaunay triangulation. An empty
-/// circle with a radius above a third of the search radius is a hole.
+/// Every boundary edge looks for its *suitable point*. This point is within the search radius. No angle of the new
+/// triangle is below `min_angle`. The normal of the new triangle differs from that of every triangle that shares an
+/// edge by at most `max_normal_angle`. Of all such points, the suitable one has an empty circle with the edge, as in a
+/// Delaunay triangulation. An empty circle with a radius above a third of the search radius is a hole.
 ///
-/// What keeps the result a surface:
-/// - A triangle is rejected when one of its edges has two triangles, when it overlaps triangles around one of its
-///   corners (exact, projected along the normal), when a nearer point lies in it, and when the boundary crosses it.
-/// - Its normal must agree with the normals of its points: within 60 degrees, at sharp edges 85. This keeps sheets
-///   apart.
-/// - In space it must not intersect triangles near it. This is tested where the surface is not flat, candidates were
-///   rejected, limits are relaxed, or a boundary that faces the other way is near.
-/// - In the end every vertex keeps one fan of triangles, the largest.
+/// These rules keep the result a surface:
+/// - A triangle is rejected if one of its edges already has two triangles, if it overlaps triangles around one of its
+///   corners (exact, projected along the normal), if a nearer point lies in it, or if the boundary crosses it.
+/// - The normal of a triangle must agree with the normals of its points: within 60 degrees, at sharp edges within 85
+///   degrees. This keeps sheets apart.
+/// - A triangle must not intersect triangles near it in space. This is tested where the surface is not flat, where
+///   candidates were rejected, under relaxed limits, and near a boundary that faces the other way.
+/// - In the end, every vertex keeps only its largest fan of triangles.
 ///
 /// Order: edges where the surface is flat and evenly sampled go first. Edges without a suitable point are retried in
-/// three rounds with min_angle × 2/3, 1/3 and 1/30, max_normal_angle × 7/6, 4/3 and 4/3, and the search radius
-/// × 1.1, 1.15 and 1.15. Further components start at unused points; components that meet are joined.
+/// three rounds with min_angle × 2/3, 1/3 and 1/30, max_normal_angle × 7/6, 4/3 and 4/3, and the search radius × 1.1,
+/// 1.15 and 1.15. Further components start at unused points. Components that meet are joined.
 ///
-/// Loops: the thesis distinguishes cases by where the point lies (outside, next on the loop, elsewhere on it). Here a
-/// triangle cancels opposite half-edges, and loops split, close and merge by themselves. Loops without a larger empty
-/// circle are closed afterwards, see holes.hpp.
+/// Loops: the thesis distinguishes cases by the position of the point (outside, next on the loop, elsewhere on it).
+/// Here, a triangle cancels opposite half-edges. Loops split, close and merge by themselves. Loops without an empty
+/// circle as large as a hole are closed afterwards, see holes.hpp.
 ///
 /// Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
 
@@ -46,18 +46,19 @@ struct RegionGrowParams {
     Angle min_angle = Angle::degrees(10);
     /// Largest angle between the normals of a new triangle and its neighbours; above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);
-    /// The suitable point is no farther from an end of the edge, and the radius of the triangle's circumcircle is at
-    /// most a third of this. Above 0; absent: 2 √3 B, where B is the point's value in the column `bin-size` or, without
-    /// one or where the density contradicts it, the voxel size that the density corresponds to (see search_radii.hpp).
+    /// Largest distance of the suitable point from the nearer end of its edge. With Score::circumradius, circumcircles
+    /// of triangles have at most a third of it as radius. Above 0. If absent, it is 2 √3 B, where B is the point's
+    /// value in the column `bin-size`. Without the column, or where the density contradicts it, B is the voxel size
+    /// that matches the density (see search_radii.hpp).
     std::optional<Length> search_radius;
-    /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
+    /// An edge is a crease if the normals of its triangles differ by more than this; 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
-    /// Standard deviation of the points' distances from the surface, for the creases; 0 or more. Absent: estimated, see
-    /// noisy_normals.hpp.
+    /// Standard deviation of the points' distances from the surface, for the creases; 0 or more. If absent, it is
+    /// estimated, see noisy_normals.hpp.
     std::optional<Length> noise;
-    /// Loops of at most this many edges are closed, and longer ones (up to 100 edges) without an empty circle as large
-    /// as a hole, unless `max_normal_angle` is below 90 degrees and their dihedral deviations exceed 4/3 of it. 0 (and
-    /// 1 and 2) closes none; at most 100.
+    /// Loops of at most this many edges are closed. Longer loops, up to 100 edges, are closed if they have no empty
+    /// circle as large as a hole. If `max_normal_angle` is below 90 degrees, such a longer loop stays open where
+    /// closing it needs dihedral deviations above 4/3 of that angle. 0, 1 and 2 close none; at most 100.
     u32 close_holes = 4;
     Score score = Score::circumradius;
     /// Row of the point where the seed triangle starts; absent: the flattest point.
@@ -65,18 +66,18 @@ struct RegionGrowParams {
 };
 
 struct RegionGrowResult {
-    /// Over the used points, in input order with their columns. Its sharp edges are the creases, and the boundary edges
-    /// beyond which the surface continues in another patch.
+    /// The surface over the used points, in input order with their columns. Its sharp edges are the creases, and the
+    /// boundary edges beyond which the surface continues in another patch.
     TriangleMesh mesh;
-    /// Its boundaries, holes and creases with the normals on both sides; beyond a boundary that is a sharp edge the
-    /// normals of the other patch.
+    /// Boundaries, holes and creases of the mesh with the normals on both sides. Beyond a boundary that is a sharp
+    /// edge, the normals are those of the other patch.
     FeatureGraph features;
     /// Per vertex its row in the cloud, ascending.
     Array<u32> rows;
-    /// Per triangle: 0 formed under the given limits, 1 to 3 under relaxed ones, 4 closing a hole.
+    /// Per triangle: 0 if formed under the given limits, 1 to 3 if formed under relaxed ones, 4 if it closes a hole.
     Array<u8> passes;
     std::size_t components = 0;
-    /// Boundary loops, and those of them that are holes.
+    /// Number of boundary loops, and number of those that are holes.
     std::size_t loops = 0, holes = 0;
     /// Loops at parts so thin that the surface may continue there (see boundaries.hpp).
     std::size_t thin_loops = 0;
@@ -87,44 +88,47 @@ struct RegionGrowResult {
     std::size_t creases = 0, corners = 0, closed_holes = 0;
     /// Standard deviation of the points' distances from the surface, given or estimated.
     double noise = 0;
-    /// Triangles removed again, where a vertex had several fans or to close a hole.
+    /// Triangles removed again, because a vertex had several fans or to close a hole.
     std::size_t removed_triangles = 0;
-    /// Loops whose area does not decide whether they are holes, and triangles without area, as counted by
-    /// find_features().
+    /// Loops whose area does not decide whether they are holes, and triangles without area. find_features() counts
+    /// both.
     std::size_t ambiguous_loops = 0, triangles_without_area = 0;
 };
 
 /// Grows a surface over the cloud, in as many components as needed.
 ///
 /// The points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used
-/// with its sign, unless the signs are mixed or few points have a normal (see normals.hpp): then it gives directions,
-/// and decides the orientation of components. A normal that is zero or not finite is replaced by the principal one.
-/// Without the column, normals are the principal directions of the 12 nearest neighbours. A column `bin-size` (one
-/// number per row, in the scan's unit; values not above 0 or not finite are unknown) gives the voxels of a thinning. Of
-/// rows at one position the smallest bin-size is used, and the first normal by x, y, z.
+/// with its signs. If the signs are mixed or few points have a normal (see given_normals.hpp), only the directions are
+/// used, and the signs decide the orientation of components. A normal that is zero or not finite is replaced by the
+/// principal one. Without the column, normals are the principal directions of the 12 nearest neighbours. A column
+/// `bin-size` (one number per row, in the scan's unit) gives the voxels of a thinning. Its values that are not finite
+/// or not above 0 count as unknown. Of rows at one position, the smallest bin-size is used, and the first normal by x,
+/// y, z.
 ///
-/// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
-/// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, and
-/// a search radius too small for any triangle (or layers so close that no triangle is flat).
+/// Throws Error with numbers and a way out: fewer than three distinct points, all points on one line, a NaN or infinite
+/// coordinate, a normal column of another size, a parameter out of range, a start that is not a row or starts nothing,
+/// and a search radius too small for any triangle (or layers so close that no triangle is flat).
 ///
-/// Post: an oriented manifold: every edge is in one triangle, or in two with opposite half-edges; the triangles of
-/// every vertex form one fan. No two vertices at one position. Triangles around a vertex do not overlap, projected
-/// along its normal, except those of pass 4, with dihedral deviations of up to 172 degrees. No triangle that was tested
-/// in space (above), nor one that closes a hole, intersects triangles near it. Angles of triangles of pass 0 keep the
-/// limits; later passes relax them. Components that enclose a volume face outwards, as do open ones that bulge; flat
-/// ones face up. With normals they face as three quarters of these do. Ties: equal scores (to 1e-9) by position along a
-/// space-filling curve. So the mesh depends neither on the order of the points, up to numbering, nor on the number of
-/// threads.
+/// Post: an oriented manifold. Every edge is in one triangle, or in two with opposite half-edges. The triangles of
+///       every vertex form one fan. No two vertices are at one position. Triangles around a vertex do not overlap,
+///       projected along its normal. Triangles of pass 4 are an exception, with dihedral deviations of up to 172
+///       degrees. No triangle that was tested in space (above), nor one that closes a hole, intersects triangles near
+///       it. Triangles of pass 0 keep the limits on angles; later passes relax these. Components that enclose a volume
+///       face outwards, as do open ones that bulge; flat ones face up. With normals whose signs are mixed or few, a
+///       component faces as three quarters of them do, if so many agree. Ties: among equal scores (to 1e-9), the first
+///       point along a space-filling curve is used. So the mesh depends neither on the order of the points, up to
+///       numbering, nor on the number of threads.
 ///
-/// Cost: O(n log n) time where the nearest 16 points decide, about 450 bytes per point beside the result. An edge where
-/// they do not, or without a suitable point, considers the open points within its search radius, and if one of them
-/// could be suitable all m there, up to four times: O(m log m) each, and again for every point that is rejected because
-/// of the boundary or other points. So a radius of many spacings costs O(n m log m) on noisy scans; use the default
-/// there.
+/// Cost: O(n log n) time where the nearest 16 points decide; about 450 bytes per point beside the result. Other edges,
+///       and edges without a suitable point, consider the open points within their search radius. If one of these could
+///       be suitable, they consider all m points there, up to four times. Each time costs O(m log m), and again for
+///       every point that is rejected because of the boundary or other points. So a radius of many spacings costs O(n m
+///       log m) on noisy scans; use the default there.
 ///
-/// Metrics: see plugin.cpp. Warns when more than half a percent of the points stay unused, when most points are too
-/// dense for their `bin-size`, about normals with mixed signs, and about what find_features() could not decide. Doubts:
-/// more than 2 % of the points unused, triangles that by themselves make more than one crease per 20 of more than
+/// Metrics: see plugin.cpp. Warns if more than half a percent of the points stay unused, if most points are too dense
+/// for their `bin-size`, about normals with mixed signs, and about cases that find_features() could not decide. Doubts
+/// the result if more than 2 % of the points are unused, if the triangles by themselves make more than one crease per
+/// 20 of more than 10,000 edges, if normals end the surface, or if loops lie at thin parts.
 /// 10,000 edges, normals that end the surface, loops at thin parts.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 

@@ -17,16 +17,16 @@ namespace scanmill::growing {
 namespace {
 
 constexpr std::size_t counted_neighbours = 12;
-/// Average over all directions of a surface.
+/// Number of voxels that a surface meets per squared voxel edge, on average over all directions.
 constexpr double voxels_per_squared_edge = 1.5;
-/// Range of the ratio of density estimate to given size in which the two agree.
+/// The density estimate and the given size agree if their ratio is in this range.
 constexpr double least_ratio = 0.55, largest_ratio = 1.15;
-/// Limit of a point's given size and estimate, in medians of those of its neighbours.
+/// Largest given size or estimate of a point, as a multiple of the median of its neighbours' sizes or estimates.
 constexpr double largest_of_median = 1.15;
 constexpr std::size_t chunk = 1 << 12;
 
-/// The voxel size that puts the last counted neighbour at its distance, for a surface that meets one voxel per squared
-/// edge.
+/// Returns the voxel size for which the last counted neighbour has its distance, on a surface that meets one voxel per
+/// squared edge.
 double size_at(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point) {
     const auto neighbours = neighbourhoods.of(point);
     const std::size_t count = std::min(counted_neighbours, neighbours.size());
@@ -55,7 +55,7 @@ public:
         for (u32 other : neighbourhoods_.of(point)) buffer.push_back(sizes_[other]);
         return std::sqrt(voxels_per_squared_edge) * std::min(sizes_[point], largest_of_median * median(buffer));
     }
-    /// The given size, limited by those of the neighbours; 0 where none is given.
+    /// The given size, limited by the sizes of the neighbours; 0 if none is given.
     double given(std::span<const double> given_sizes, u32 point, std::vector<double>& buffer) const {
         if (given_sizes.empty() || !(given_sizes[point] > 0)) return 0;
         buffer.clear();
@@ -63,7 +63,7 @@ public:
             if (given_sizes[other] > 0) buffer.push_back(given_sizes[other]);
         return buffer.empty() ? given_sizes[point] : std::min(given_sizes[point], largest_of_median * median(buffer));
     }
-    /// Estimate for voxels aligned with the axes.
+    /// Median of the neighbours' estimates, for voxels aligned with the axes.
     double by_density_and_normals(u32 point, std::vector<double>& buffer) const {
         buffer.clear();
         for (u32 other : neighbourhoods_.of(point))
@@ -142,9 +142,9 @@ void warn_of_contradiction(std::span<const double> given_sizes, const SearchRadi
     }
     if (2 * given.size() <= given_sizes.size()) return;
     context.warn(
-        fmt::format("{} of {} points are too dense for their column `bin-size`: as dense as voxels of {:.3g} {} leave "
-                    "them, not {:.3g}; their search radius follows from the density. Thin the points again, drop the "
-                    "column, or check the scan's unit",
+        fmt::format("{} of {} points are too dense for their column `bin-size`: their density is that of voxels of "
+                    "{:.3g} {}, not {:.3g}; the search radius follows from the density. Thin the points again, drop "
+                    "the column, or check the scan's unit",
                     given.size(), given_sizes.size(), median(seen), symbol(unit), median(given)));
 }
 

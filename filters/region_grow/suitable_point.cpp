@@ -14,7 +14,8 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Scores that differ by less than this, relative to 1 or to themselves, are equal: rounding at points of a grid.
+/// Scores that differ by less than this, relative to 1 + |score|, are equal. This allows for rounding at points of a
+/// grid.
 constexpr double score_tolerance = 1e-9;
 
 }  // namespace
@@ -115,7 +116,7 @@ void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limi
         if (!(area_squared > 0) || along * along > cotangent_squared * area_squared) continue;
         if (cosine * std::abs(cosine) < least_squared_cosine * area_squared) continue;
         const double twice_area = std::sqrt(area_squared);
-        // The distance of the circumcentre from the edge's middle, in half edges.
+        // The signed distance of the circumcentre from the edge's middle, as a multiple of half the edge.
         const double cotangent = along / twice_area;
         if (score_ == Score::midpoint && std::min(to_a.squaredNorm(), to_b.squaredNorm()) > radius * radius) continue;
         const double score = score_ == Score::midpoint ? (d - middle).squaredNorm() / half_squared : cotangent;
@@ -134,7 +135,8 @@ bool PointChooser::may_find(u32 from, u32 to, const Vec3& joined, double radius,
                sectors_are_free(surface_, {from, candidate.point, to}, candidate.normal, limits.pass != 0);
     });
     return std::any_of(candidates_.begin(), kept, [&](const Candidate& candidate) {
-        // Those with lower scores are rejected before this one is considered, unless their scores might count as equal.
+        // Candidates with lower scores are rejected before this one is considered, unless their scores may count as
+        // equal.
         const double lower = candidate.score - 3 * score_tolerance * (1 + std::abs(candidate.score));
         rejected_.clear();
         std::copy_if(kept, candidates_.end(), std::back_inserter(rejected_),
@@ -271,7 +273,7 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
     if (!agrees_with_joined(from, point, candidate.normal, limits.normal_cosine) ||
         !agrees_with_joined(point, to, candidate.normal, limits.normal_cosine))
         return false;
-    // A triangle that shares nothing but the point with those at the point: later triangles will connect them.
+    // The triangle shares only the point with the triangles at the point. Later triangles will connect them.
     const bool touches =
         !fans.empty(point) && fans.left_of(point, from) == invalid_index && fans.left_of(to, point) == invalid_index;
     return !touches || fan_normal(surface_, point, Vec3::Zero()).dot(candidate.normal) >= limits.touch_cosine;

@@ -9,8 +9,8 @@
 
 namespace scanmill::growing {
 
-/// Radius of the largest empty circle that is not a hole of the surface, in search radii. Points thinned with voxels of
-/// edge B leave empty circles of at most 1.1 B; the search radius is 2 √3 B.
+/// Radius of the largest empty circle that is not a hole of the surface, as a share of the search radius. Points
+/// thinned with voxels of edge B leave empty circles of at most 1.1 B; the search radius is 2 √3 B.
 inline constexpr double largest_empty_circle = 1.0 / 3;
 
 enum class Score : u8 { circumradius, midpoint };
@@ -18,10 +18,10 @@ enum class Score : u8 { circumradius, midpoint };
 /// Limits of a new triangle. Angles are stored as the sines and cosines that are compared.
 struct Limits {
     double least_sine;  ///< sine of the triangle's smallest angle
-    double normal_cosine;  ///< least, between the normals of the triangle and of every triangle that shares an edge
-    double touch_cosine;  ///< least, to the mean normal of the triangles that share nothing but the new point
-    double point_cosine;  ///< least, between the normals of the triangle and of its points
-    double sharp_cosine;  ///< the same for points at edges and tips
+    double normal_cosine;  ///< least cosine between the triangle's normal and that of each triangle that shares an edge
+    double touch_cosine;  ///< least cosine to the mean normal of the triangles that share only the new point
+    double point_cosine;  ///< least cosine between the normals of the triangle and of its points
+    double sharp_cosine;  ///< point_cosine for points at edges and tips
     double radius_factor;  ///< multiplies the search radius
     Pass pass;  ///< 0: the given limits. Later passes project along the mean normal of the triangles at a
                 ///< corner instead of the point's normal.
@@ -37,8 +37,8 @@ struct SuitablePoint {
 
 /// A radius search over the open points (unused or on the boundary), which becomes faster as the surface closes.
 ///
-/// A tree over the points in their order, which follows a space-filling curve. Interior points are forgotten when a
-/// search meets them, so no interior point may become open while the tree is in use.
+/// It is a tree over the points in their order, which follows a space-filling curve. A search forgets the interior
+/// points that it meets. So no interior point may become open while the tree is in use.
 class OpenPoints {
 public:
     /// Cost: linear, 7 to 14 bytes per point.
@@ -67,22 +67,22 @@ class PointChooser {
 public:
     PointChooser(const Surface& surface, Score score) : surface_(surface), score_(score), open_points_(surface) {}
 
-    /// The point D for which triangle (from, D, to) continues the surface over its boundary edge from → to;
-    /// invalid_index when no point satisfies the limits. `wide`: search all points in the search radius, not only the
-    /// neighbour lists.
+    /// Returns the point D for which triangle (from, D, to) continues the surface over its boundary edge from → to;
+    /// invalid_index if no point satisfies the limits. With `wide`, all points in the search radius are searched, not
+    /// only the neighbour lists.
     ///
-    /// Score::circumradius: the point that sees the edge under the largest angle, so that the circle through the three
-    /// is empty; Score::midpoint: the point nearest the edge's midpoint. Ties (within rounding): the lowest
-    /// number. `in_space`: the triangle must not intersect the surface in space. Where a boundary that faces the other
-    /// way is near, this is tested in any case.
+    /// Score::circumradius chooses the point that sees the edge under the largest angle, so that the circle through the
+    /// three is empty. Score::midpoint chooses the point nearest the edge's midpoint. Ties (within rounding): the
+    /// lowest number. With `in_space`, the triangle must not intersect the surface in space. Where a boundary that
+    /// faces the other way is near, this is tested in any case.
     SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool wide, bool in_space);
     /// Whether the triangle intersects triangles at the nearest neighbours of its corners.
     bool intersects_surface(const Triangle& triangle);
     /// The third point of a seed triangle, on either side of the edge.
     u32 choose_third(u32 from, u32 to, const Limits& limits);
-    /// The boundary point that a boundary edge would choose if it were not for `normal_cosine` at that edge: a
-    /// neighbour of neither end, suitable otherwise, without a fold back onto the edge's triangle. invalid_index if
-    /// there is none.
+    /// Returns the boundary point that a boundary edge would choose if it were not for `normal_cosine` at that edge.
+    /// The point is a neighbour of neither end. It is otherwise suitable, and its triangle does not fold back onto the
+    /// edge's triangle. invalid_index if there is none.
     u32 beyond_sharp_edge(u32 from, u32 to, const Limits& limits);
 
 private:
@@ -97,19 +97,20 @@ private:
     double squared_search_range(double radius) const;
     /// Fills near_ with the points to consider.
     void collect(u32 from, u32 to, double radius, bool wide);
-    /// Fills candidates_ with those of near_ whose circle and normal allow a triangle, and boundary_points_.
+    /// Fills candidates_ with the points of near_ whose circle and normal allow a triangle. Fills boundary_points_ with
+    /// those on the boundary.
     void rate(u32 from, u32 to, const Vec3& joined, const Limits& limits);
-    /// False when no open point in the search radius satisfies the limits, whatever is nearer. Changes near_ and
-    /// candidates_.
+    /// A necessary condition for choose(). False if every open point in the search radius violates the limits or is
+    /// certain to be rejected because of others. Changes near_, candidates_ and rejected_.
     bool may_find(u32 from, u32 to, const Vec3& joined, double radius, const Limits& limits);
-    /// Call between rate() and take_best(): orders the candidates, with none rejected.
+    /// Orders the candidates, with none rejected. Call it between rate() and take_best().
     void start_ranking();
     bool has_candidates() const { return !candidates_.empty() || !equal_.empty(); }
     /// Removes the candidate with the lowest score; ties: the lowest number. Pre: has_candidates().
     Candidate take_best();
 
     bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed);
-    /// Together with sectors_are_free() everything that does not depend on other candidates.
+    /// Tests the limits. Together with sectors_are_free(), these are all tests that do not depend on other candidates.
     bool satisfies_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed) const;
     bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const;
     /// Whether a rejected candidate lies in the triangle, or the boundary crosses it.
