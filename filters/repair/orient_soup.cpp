@@ -8,7 +8,7 @@
 namespace scanmill {
 
 std::vector<u32> orient_soup(std::size_t vertices, std::vector<Triangle>& triangles) {
-    // CGAL only copies points, so a point is its vertex's number.
+    // CGAL only copies points, so the number of a vertex serves as its point.
     std::vector<u32> originals(vertices);
     for (u32 v = 0; v < vertices; ++v) originals[v] = v;
     std::vector<std::vector<std::size_t>> polygons;

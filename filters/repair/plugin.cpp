@@ -14,9 +14,9 @@ SCANMILL_FILTER() {
             "component "
             "at the limit of min-component stays.")
         .not_finite("Refused; the message gives their number and the first one.")
-        .in<TriangleMesh>("mesh",
-                          "Any triangles: a soup, with neighbours of any orientation, edges of any number of "
-                          "triangles.")
+        .in<TriangleMesh>(
+            "mesh",
+            "Any triangles, also a soup: neighbours may have any orientation, and edges any number of triangles.")
         .out<TriangleMesh>("mesh",
                            "At most two triangles at an edge, oriented equally; one fan at a vertex. Vertices, "
                            "triangles and edges that stay keep their order and their columns.")
@@ -28,11 +28,11 @@ SCANMILL_FILTER() {
                "Connected components with less than this share of the area are removed.", at_least(0), at_most(1))
         .metric("oriented", Unit::count, "Triangles that were reversed.")
         .metric("stitched", Unit::count, "Vertices that were joined to another one.")
-        .metric("split-vertices", Unit::count, "Copies that vertices received where several surfaces met.")
+        .metric("split-vertices", Unit::count, "Copies of vertices, made where several surfaces met.")
         .metric("split-edges", Unit::count, "Edges that had three or more triangles.")
         .metric("removed-triangles", Unit::count,
-                "Triangles that were removed: with a repeated vertex, a second time the same, without area at the "
-                "boundary, or in a small component.",
+                "Triangles that were removed: they had a repeated vertex, were the same as an earlier triangle, had no "
+                "area at the boundary, or were in a small component.",
                 headline)
         .metric("removed-components", Unit::count, "Components below min-component.")
         .metric("removed-points", Unit::count, "Vertices, other than joined ones, that are in no triangle that stays.")

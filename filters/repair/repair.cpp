@@ -90,7 +90,7 @@ private:
 
     void stitch_boundary(double distance) {
         CellGrid grid(bounding_box(positions_), distance);
-        std::vector<std::vector<u32>> kept;  // by cell
+        std::vector<std::vector<u32>> kept;  // vertices that stay, by cell
         std::vector<u32> becomes(joined_.size());
         std::iota(becomes.begin(), becomes.end(), 0);
         for (const u32 v : boundary_vertices()) {
@@ -171,7 +171,7 @@ private:
         }
     }
 
-    /// Whether the triangle at `index` has the orientation of the input.
+    /// Whether the orientation of the triangle at `index` is the reverse of that in the input.
     bool is_reversed(std::size_t index) const {
         const Triangle& input = mesh_.triangles[rows_[index]];
         std::array<u32, 3> now;
@@ -195,7 +195,7 @@ private:
             const u32 component = components.find(t);
             for (const u32 h : {3 * t, 3 * t + 1, 3 * t + 2})
                 if (opposite[h] == half_edges::boundary) is_open[component] = true;
-            // A share of 0 area also votes.
+            // Triangles without area also vote.
             (is_reversed(t) ? votes[component].reversed : votes[component].kept) +=
                 std::max(area_of(positions_, triangles_[t]), std::numeric_limits<double>::min());
             const Vec3& origin = positions_[triangles_[component][0]];
@@ -219,7 +219,7 @@ private:
         }
     }
 
-    /// Sharp edges and rows of edge columns, by the vertices that their edges have now.
+    /// Finds the present vertices of sharp edges and of the rows of edge columns.
     void carry_edges() {
         if (mesh_.sharp_edges.empty() && mesh_.edges.empty()) return;
         std::set<Edge> sharp;
@@ -286,7 +286,7 @@ private:
             separate_parts();
         }
         if (result_.left_without_area > 0)
-            context_.warn(fmt::format("{} without area: a flip of their longest edge would make an edge twice",
+            context_.warn(fmt::format("{} without area: a flip of their longest edge would repeat an existing edge",
                                       count_text(result_.left_without_area, "triangle stays", "triangles stay")));
     }
 
@@ -385,7 +385,7 @@ private:
                             result_.repeated_vertex));
     }
 
-    /// The face column `corner-normals` has three normals per triangle, in the order of its corners.
+    /// Reorders the face column `corner-normals`: three normals per triangle, in the order of its corners.
     void turn_corner_normals(ColumnTable& columns) const {
         ColumnTable result;
         for (const Column& column : columns) {
@@ -450,7 +450,7 @@ private:
     RepairResult result_;
     /// Positions of the input, then of copies.
     Array<Vec3> positions_;
-    /// By vertex of the input: the one it is joined to.
+    /// By vertex of the input: the vertex that it is joined to.
     Array<u32> joined_;
     /// By vertex: the row of the input's vertex whose values it has.
     Array<u32> source_;
@@ -472,7 +472,7 @@ void require_usable(const TriangleMesh& mesh, const RepairParams& params) {
     require_triangles(mesh, "repair needs at least one");
 }
 
-/// Whether they are edges of triangles, each once.
+/// Whether all `edges` are edges of triangles, without repeats.
 bool are_edges(std::span<const Edge> edges, const TriangleMesh& mesh) {
     std::set<Edge> missing(edges.begin(), edges.end());
     if (missing.size() < edges.size()) return false;
@@ -481,7 +481,7 @@ bool are_edges(std::span<const Edge> edges, const TriangleMesh& mesh) {
     return missing.empty();
 }
 
-/// Whether nothing is to be done; false also in rare cases where a closer look would find that.
+/// Whether the mesh needs no repair. In rare cases false although a closer look would find that it needs none.
 bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairParams& params) {
     if (!shape.genus || shape.unused_vertices > 0) return false;
     if (params.stitch.value() > 0 && !shape.closed) return false;
