@@ -4,10 +4,10 @@
 ///
 /// A cell with one facet on the boundary may be removed if the opposite corner is not on the boundary: one triangle
 /// becomes three. A cell with two such facets may be removed if the edge opposite to their common edge is not on the
-/// boundary: the common edge is flipped. Removing a cell with three such facets would leave a point outside, a cell
-/// with four is a solid of its own, and after any other removal the boundary would touch itself.
+/// boundary: the common edge is flipped. No other cell may be removed. Without a cell with three such facets, a point
+/// would be outside. A cell with four is a solid of its own. In all other cases, the boundary would touch itself.
 ///
-/// Queries take cells `without` that count as removed already.
+/// In queries, the cells `without` count as removed already.
 
 #include <span>
 #include <vector>
@@ -68,7 +68,7 @@ struct CellEdge {
 inline constexpr std::array<CellEdge, 6> cell_edges{
     {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
 
-/// The single corner in the mask, and the two corners in it.
+/// Return the only corner in the mask, and both corners in it.
 int only_corner(unsigned mask);
 std::array<int, 2> both_corners(unsigned mask);
 

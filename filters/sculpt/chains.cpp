@@ -33,7 +33,7 @@ bool Chains::is_better(const Chain& chain, const Chain& best) const {
 }
 
 void Chains::search_from(const Chain& chain, Chain& best) const {
-    // Most of a boundary is smooth: nothing is evaluated there.
+    // Most of a boundary is smooth. Nothing is evaluated there.
     Chain checked = chain;
     if (checked.may_smooth_ && !evaluate(checked)) return;
     if (checked.may_smooth_ && checked.length_ > 1 && is_better(checked, best)) best = checked;
@@ -53,9 +53,9 @@ Chain Chains::best_from(u32 cell, unsigned open) const {
 }
 
 void Chains::find_first_cells(u32 changed) {
-    // The first cell of a chain has two open facets now. A later cell gets one or both of its two during the chain: now
-    // it has one, or none and two earlier cells as neighbours. So the first cell is at most two steps from any other
-    // cell of the chain, through cells with fewer than two open facets.
+    // The first cell of a chain has two open facets now. A later cell of the chain gets one or both of its open facets
+    // during the chain. Now it has one, or it has none and two earlier cells as neighbours. So the first cell is at
+    // most two steps from any other cell of the chain, through cells with fewer than two open facets.
     const auto open_facets = [&](u32 cell) { return solid_.has(cell) ? std::popcount(solid_.open_facets(cell)) : 4; };
     const auto consider = [&](u32 cell) {
         const int open = open_facets(cell);

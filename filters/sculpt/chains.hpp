@@ -13,31 +13,31 @@ namespace scanmill::sculpting {
 
 inline constexpr std::size_t longest_chain = 3;
 
-/// Two flips or more, each but the first at a facet that an earlier one uncovers.
+/// Two flips or more. Each flip except the first is at a facet that an earlier flip uncovers.
 class Chain {
 public:
     /// The cells in the order of removal; empty if no chain exists.
     std::span<const u32> cells() const { return {cells_.data(), length_}; }
-    /// The sum over all flips.
+    /// Sum of the gains of all flips.
     double gain() const { return gain_; }
 
 private:
     friend class Chains;
     std::array<u32, longest_chain> cells_;
-    /// The facets of each that are open when it is removed.
+    /// Per cell: the facets that are open when it is removed.
     std::array<unsigned, longest_chain> open_;
     std::size_t length_ = 0;
-    /// How many of the flips have been checked; `gain_` and `least_` are sums over these.
+    /// Number of flips that have been checked; `gain_` and `least_` are sums over these.
     std::size_t evaluated_ = 0;
     double gain_ = 0;
-    /// The least gain required.
+    /// Sum of the least gains that the flips require.
     double least_ = 0;
-    /// Smoothing is allowed at one of the cells.
+    /// Whether smoothing is allowed at one of the cells.
     bool may_smooth_ = false;
 };
 
-/// The chains that are worth taking: all their flips are allowed, smoothing is allowed at one cell at least (see
-/// StepCriteria), and together they gain more than as many smoothing steps must.
+/// Finds chains that are worth taking. All flips of such a chain are allowed, and smoothing is allowed at one of its
+/// cells at least (see StepCriteria). Together its flips gain more than as many smoothing steps must.
 class Chains {
 public:
     Chains(const CarvedSolid& solid, const StepCriteria& criteria)
@@ -45,14 +45,14 @@ public:
           criteria_(criteria),
           waiting_(solid.tets()) {}
 
-    /// The best chain that begins with the cell; ties: the one with the lower cells. None unless the cell has two
-    /// open facets. Pre: `open` are its open facets.
+    /// Returns the best chain that begins with the cell; ties: the one with the lower cells. Empty unless the cell has
+    /// two open facets. Pre: `open` are its open facets.
     Chain best_from(u32 cell, unsigned open) const;
 
     void append(const std::vector<WaitingStep>& first_cells) { waiting_.append(first_cells); }
-    /// To be called if a gain at the cell has changed, or smoothing is now allowed there.
+    /// Call this if a gain at the cell has changed, or if smoothing is now allowed there.
     void recheck(u32 cell) { changed_.push_back(cell); }
-    /// The best chain of all; empty if there is none.
+    /// Returns the best of all chains; empty if there is none.
     Chain next();
 
 private:

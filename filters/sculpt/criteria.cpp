@@ -16,8 +16,8 @@ namespace scanmill::sculpting {
 
 namespace {
 
-constexpr double cosine_of_sharp = std::numbers::sqrt2 / 2;  // of 45°
-constexpr double sine_of_thin = 0.0017453283658983088;  // of 0.1°
+constexpr double cosine_of_sharp = std::numbers::sqrt2 / 2;  // cosine of 45°
+constexpr double sine_of_thin = 0.0017453283658983088;  // sine of 0.1°
 
 std::array<int, 4> sorted_corners(const TetMesh& tets, u32 cell) {
     const Tetrahedron& corners = tets.cells[cell];
@@ -34,9 +34,10 @@ std::array<int, 4> sorted_corners(const TetMesh& tets, u32 cell) {
     return order;
 }
 
-/// Its length is twice the area; except for the sign, its bits do not depend on the order of the corners.
+/// Normal whose length is twice the triangle's area. Except for the sign, its bits do not depend on the order of the
+/// corners.
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-    // Computed from the lowest corner; it is chosen without a branch, which could not be predicted.
+    // The lowest corner is the origin. It is chosen without a branch, which could not be predicted.
     const std::array<const Vec3*, 5> corners{&a, &b, &c, &a, &b};
     std::size_t low = is_lower(b, a) ? 1 : 0;
     low = is_lower(c, *corners[low]) ? 2 : low;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How much the bending of a boundary changes when a cell is removed, and which removals are worth taking.
+/// Computes how much the bending of a boundary changes if a cell is removed. Decides which removals are worth taking.
 ///
 /// The bending of an edge is the angle between the normals of its two triangles: 0 if they are coplanar.
 
@@ -15,11 +15,11 @@
 
 namespace scanmill::sculpting {
 
-/// The cell whose sorted corners are lower; a total order that does not depend on indices.
+/// Whether the sorted corners of cell `a` are lower than those of `b`. This total order does not depend on indices.
 bool is_lower_cell(const TetMesh& tets, u32 a, u32 b);
 
-/// The sum of the bending of all edges, in radians. Pre: the links of a closed 2-manifold; sorts them. Bytes do not
-/// depend on the number of threads.
+/// The sum of the bending of all edges, in radians. Pre: the links of a closed 2-manifold, which are sorted here. Bytes
+/// do not depend on the number of threads.
 double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsigned threads);
 
 /// Gains of removals. All numbers are computed from corners sorted by position: bytes do not depend on indices.
@@ -27,26 +27,27 @@ class Gains {
 public:
     Gains(const CarvedSolid& solid, SculptWeight weight) : solid_(solid), tets_(solid.tets()), weight_(weight) {}
 
-    /// The bending at the cell's edges before its removal minus that after it. Pre: the cell exposes or flips, and
-    /// `open` are its open facets.
+    /// The gain: the bending at the cell's edges before its removal minus that after it. Pre: the cell exposes or
+    /// flips, and `open` are its open facets.
     double of(u32 cell, unsigned open, Without without = {}) const;
 
-    /// The bending of the common edge of a cell's two open facets is above 45°.
+    /// Whether the bending of the common edge of a cell's two open facets is above 45°.
     bool is_sharp(u32 cell, unsigned open) const;
     /// The unit of the least gain of a flip: 1, or for SculptWeight::length the length of the common edge.
     double weight_of_flip(u32 cell, unsigned open) const;
-    /// Removing the cell uncovers a facet with an angle below 0.1°.
+    /// Whether removing the cell uncovers a facet with an angle below 0.1°.
     bool uncovers_thin_facet(u32 cell, unsigned open) const;
-    /// Removing the cell uncovers a facet whose squared circumradius is above `most`.
+    /// Whether removing the cell uncovers a facet whose squared circumradius is above `most`.
     bool uncovers_larger_facet(u32 cell, unsigned open, double most) const;
     /// Squared circumradius of the facet.
     double squared_radius(u32 cell, int facet) const;
     double volume(u32 cell) const;
 
 private:
-    /// Outward; its length is twice the facet's area.
+    /// Outward normal of a facet; its length is twice the facet's area.
     Vec3 normal(u32 cell, int facet) const;
-    /// The normal of the boundary triangle on the other side of the edge, which is not a facet of the cell.
+    /// Normal of the boundary triangle beyond the edge that the facets `across` and `kept` share. This triangle is not
+    /// a facet of the cell.
     Vec3 outer_normal(u32 cell, int across, int kept, Without without) const;
 
     const CarvedSolid& solid_;
@@ -54,38 +55,41 @@ private:
     SculptWeight weight_;
 };
 
-/// Which steps are allowed, and what each would gain.
+/// Decides which steps are allowed, and computes what each would gain.
 class StepCriteria {
 public:
-    /// From now on no flip may uncover a triangle whose circumradius is larger than those of the present boundary.
+    /// Stores the largest circumradius of the present boundary. Flips may not uncover a triangle with a larger one.
     StepCriteria(const CarvedSolid& solid, const SculptParams& params, unsigned threads);
 
-    /// The gain of removing the cell to smooth the boundary. None unless the cell flips an edge, gains enough, uncovers
-    /// neither a thin nor a too large triangle, and smoothing is allowed there. Pre: `open` are its open facets.
+    /// Returns the gain of removing the cell to smooth the boundary. Empty unless the cell flips an edge, gains enough,
+    /// uncovers neither a thin nor a too large triangle, and smoothing is allowed there. Pre: `open` are its open
+    /// facets.
     std::optional<double> smoothing(u32 cell, unsigned open) const {
         return std::popcount(open) == 2 && may_smooth(cell, open) ? flip(cell, open) : std::nullopt;
     }
-    /// Removing the cell flips an edge and uncovers neither a thin nor a too large triangle, whatever it gains.
+    /// Whether removing the cell flips an edge and uncovers neither a thin nor a too large triangle, whatever it gains.
     bool may_flip(u32 cell, unsigned open, Without without) const {
         return solid_.flips(cell, open, without) && !gains_.uncovers_thin_facet(cell, open) &&
                !uncovers_too_large(cell, open);
     }
-    /// Smoothing is allowed near an exposing step and at edges whose bending is above 45°. Pre: two facets are open.
+    /// Whether smoothing is allowed: near an exposing step, and at edges whose bending is above 45°. Pre: two facets
+    /// are open.
     bool may_smooth(u32 cell, unsigned open) const { return is_near_exposed(cell) || gains_.is_sharp(cell, open); }
     /// The least gain of a flip.
     double least_gain(u32 cell, unsigned open) const { return min_gain_ * gains_.weight_of_flip(cell, open); }
-    /// The gain of an exposing step; with look-ahead together with the best smoothing step that it makes possible. Pre:
-    /// the cell exposes.
+    /// The gain of an exposing step. With look-ahead, it includes the gain of the best smoothing step that the exposing
+    /// step makes possible. Pre: the cell exposes.
     double exposing(u32 cell, unsigned open) const;
 
-    /// Removing the cell uncovers a triangle whose circumradius is larger than all were when sculpting began.
+    /// Whether removing the cell uncovers a triangle whose circumradius is larger than all were when sculpting began.
     bool uncovers_too_large(u32 cell, unsigned open) const {
         return gains_.uncovers_larger_facet(cell, open, largest_);
     }
 
-    /// Smoothing is allowed at such cells, however small the dihedral deviation at the edge is.
+    /// Whether the cell is near an exposing step. Smoothing is allowed there, however small the dihedral deviation at
+    /// the edge is.
     bool is_near_exposed(u32 cell) const { return is_near_exposed_[cell] == 1; }
-    /// False if the cell was marked already.
+    /// Marks the cell. False if it was marked already.
     bool mark_near_exposed(u32 cell) { return std::exchange(is_near_exposed_[cell], u8(1)) == 0; }
 
     const Gains& gains() const { return gains_; }

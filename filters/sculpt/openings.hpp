@@ -11,7 +11,7 @@
 namespace scanmill::sculpting {
 
 struct Opening {
-    /// The sum over the flips and the exposing step.
+    /// Sum of the gains of the flips and the exposing step.
     double gain = 0;
     /// Cells to remove in this order. `first` may be none; if `second` is none, there is no opening.
     u32 first = none, second = none;
@@ -22,8 +22,9 @@ public:
     /// Queries change the solid temporarily.
     Openings(CarvedSolid& solid, const StepCriteria& criteria);
 
-    /// The next opening. Interior points are processed in rounds: in each round, those that can be reached are ordered
-    /// by falling gain. Returns none after a round in which no point could be reached. Pre: no exposing step is left.
+    /// Returns the next opening. Interior points are processed in rounds: in each round, those that can be reached are
+    /// ordered by falling gain. Returns no opening after a round in which no point could be reached. Pre: no exposing
+    /// step is left.
     Opening next();
 
     enum class Reason { blocked, deep };

@@ -10,8 +10,8 @@ SCANMILL_FILTER() {
         .summary("Removes single cells of a solid until every point is on its boundary and the boundary is smoother.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps")
         .ties(
-            "Of equal gains the step at the larger triangle comes first, then the one whose cell has the lower "
-            "corners; of chains of flips the one with the lower first cell.")
+            "Among steps of equal gain, the one at the larger triangle comes first, then the one whose cell has the "
+            "lower corners. Among chains of flips, the one with the lower first cell comes first.")
         .in<TetMesh>("tets",
                      "Cells of a Delaunay tetrahedralisation, labelled by alpha-solid, with a manifold boundary.")
         .made_by("alpha-solid")
@@ -19,10 +19,12 @@ SCANMILL_FILTER() {
         .out<TetMesh>("tets", "The cells, with the removed ones labelled outside.")
         .choice("weight", &P::weight,
                 {{"none", SculptWeight::none, "Every edge counts the angle between its triangles' normals."},
-                 {"length", SculptWeight::length, "The angle times the edge's length: better on uneven triangles."}},
+                 {"length", SculptWeight::length,
+                  "Every edge counts the angle times its length: better on uneven triangles."}},
                 "Contribution of an edge to the sum that is minimised.")
         .param("min-gain", &P::min_gain,
-               "A smoothing step must decrease the bending by more than this, a chain by more than this for each step.",
+               "A smoothing step must decrease the bending by more than this; a chain of n steps must decrease it by "
+               "more than n times this.",
                at_least(0))
         .param("lookahead", &P::lookahead,
                "Whether the gain of an exposing step includes the best smoothing step after it.")
@@ -35,13 +37,14 @@ SCANMILL_FILTER() {
         .metric("removed-share", Unit::ratio, "Removed cells divided by the cells inside before.")
         .metric("volume-removed", Unit::volume, "Volume of the removed cells.")
         .metric("bending-before", Unit::angle, "Sum over the boundary's edges of the angle between normals, before.")
-        .metric("bending-after", Unit::angle, "The same sum afterwards.", smaller_is_better)
+        .metric("bending-after", Unit::angle, "Sum over the boundary's edges of the angle between normals, afterwards.",
+                smaller_is_better)
         .metric("interior-points", Unit::count, "Points left inside the solid.", headline, smaller_is_better)
-        .metric(
-            "interior-blocked", Unit::count,
-            "Such points that no removal can reach: the boundary would touch itself, or a point would be left outside.",
-            smaller_is_better)
-        .metric("interior-deep", Unit::count, "Such points that lie more than two cells below the boundary.",
+        .metric("interior-blocked", Unit::count,
+                "Interior points that no removal can reach: the boundary would touch itself, or a point would be left "
+                "outside.",
+                smaller_is_better)
+        .metric("interior-deep", Unit::count, "Interior points that lie more than two cells below the boundary.",
                 smaller_is_better)
         .metric("outside-points", Unit::count, "Points in no cell of the solid, as in the input.", smaller_is_better)
         .metric("triangles", Unit::count, "Triangles of the boundary.")

@@ -39,14 +39,14 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
 void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
     if (defects.vertices.empty()) return;
     throw Error(
-        "needs a solid whose boundary is a 2-manifold; of this one's {} triangles, {} more than two, and at {} "
+        "needs a solid whose boundary is a 2-manifold; among its {} triangles, {} more than two of them, and at {} "
         "(first {}) they do not form one closed fan",
         triangles, count_text(defects.edges, "edge has", "edges have"),
         count_text(defects.vertices.size(), "vertex", "vertices"), defects.vertices.front())
         .hint("'alpha-solid: {alpha: auto}' gives a manifold boundary");
 }
 
-/// Vertices in a cell labelled 1.
+/// Number of vertices in cells labelled 1.
 std::size_t covered_vertices(const TetMesh& tets, std::span<const u8> labels) {
     Array<u8> covered(tets.positions.size());
     std::ranges::fill(covered, u8(0));
@@ -82,7 +82,7 @@ void count_steps(SculptResult& result, const Gains& gains) {
     }
 }
 
-/// "(1, 2, 3), (4, 5, 6) …" in world coordinates, the lowest indices first.
+/// Returns a text such as "(1, 2, 3), (4, 5, 6) …" in world coordinates, the lowest indices first.
 std::string positions_of_first(const TetMesh& tets, const Array<u32>& vertices) {
     constexpr std::size_t most = 3;
     std::string text;

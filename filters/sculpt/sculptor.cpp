@@ -169,7 +169,7 @@ void Sculptor::refresh_near(u32 removed) {
         refresh(cell);
         chains_.recheck(cell);
     }
-    // With look-ahead the gain of an exposing step depends on those of its neighbours.
+    // With look-ahead, the gain of an exposing step depends on the gains of the cell's neighbours.
     for (u32 cell : changed_)
         for (u32 across : tets_.neighbours[cell])
             if (solid_.has(across) && solid_.exposes(across, solid_.open_facets(across))) refresh(across);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The order of the steps: which cell of the solid is removed next.
+/// Decides which cell of the solid is removed next.
 
 #include "sculpt/chains.hpp"
 #include "sculpt/openings.hpp"
 
 namespace scanmill::sculpting {
 
-/// Greedy: the best smoothing step if there is one, else the best chain of flips, else the best exposing step, else an
-/// opening; until none of these is left.
+/// Takes steps greedily until none is left: the best smoothing step if there is one, else the best chain of flips, else
+/// the best exposing step, else an opening.
 class Sculptor {
 public:
     /// `interior_points`: vertices of the solid that are not on its boundary.
@@ -36,8 +36,8 @@ private:
     bool is_current(const WaitingStep& step) const {
         return solid_.has(step.cell) && evaluated_[step.cell] == step.time;
     }
-    /// Evaluates the cell again, unless that was done since the last removal. Exposing steps only become due: most
-    /// change several times before one of them is taken.
+    /// Evaluates the cell again, unless that was done since the last removal. Exposing steps are only marked as due,
+    /// since most of them change several times before one is taken.
     void refresh(u32 cell);
     void evaluate_due();
     /// Evaluates all cells again whose gain the removal may have changed.
@@ -52,7 +52,8 @@ private:
     Openings openings_;
     std::size_t interior_points_;
     StepQueue smoothing_, exposing_;
-    /// Cells whose exposing steps must be evaluated before the next one is taken; per cell whether it is among them.
+    /// Cells whose exposing steps must be evaluated before the next such step is taken. `is_due_`: whether a cell is
+    /// among them.
     std::vector<u32> due_;
     Array<u8> is_due_;
     Array<SculptRemoval> removals_;

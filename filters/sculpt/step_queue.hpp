@@ -15,7 +15,7 @@ struct WaitingStep {
     /// Among equal gains the larger radius comes first: squared circumradius for exposing steps, else 0.
     double radius = 0;
     u32 cell = none;
-    /// When the cell was evaluated.
+    /// Number of removals before the cell was evaluated.
     u32 time = 0;
     /// Result of StepCriteria::uncovers_too_large(): such steps come last.
     bool is_too_large = false;
@@ -34,7 +34,8 @@ public:
         heap_.insert(heap_.end(), steps.begin(), steps.end());
         std::ranges::make_heap(heap_, Later{*tets_});
     }
-    /// Removes the best step with is_current(step), and all better ones. False if there is none.
+    /// Removes the best step for which is_current() is true, and returns it in `step`. Also removes all better steps,
+    /// which are stale. False if there is none.
     template <class IsCurrent>
     bool pop(WaitingStep& step, const IsCurrent& is_current) {
         while (!heap_.empty()) {
