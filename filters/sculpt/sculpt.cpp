@@ -97,8 +97,8 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
     const TetMesh& tets = result.tets;
     if (!result.blocked_points.empty())
         context.warn(fmt::format(
-            "{} of {} points {} inside the solid, because without any of the cells over them its boundary would touch "
-            "itself or a point would be outside: at {}; the sampling is too sparse or too noisy there",
+            "{} of {} points {} inside the solid at {}: if a cell over such a point were removed, the boundary would "
+            "touch itself or a point would be outside; the sampling is too sparse or too noisy there",
             result.blocked_points.size(), tets.positions.size(),
             by_count(result.blocked_points.size(), "stays", "stay"), positions_of_first(tets, result.blocked_points)));
     if (!result.deep_points.empty())
