@@ -26,7 +26,7 @@ public:
 
     void build(Grid& grid, const Fineness& fineness) const {
         const bool is_straight = std::ranges::all_of(edges_, [](const Row& edge) { return edge.vertices.size() == 2; });
-        // The triangle itself is possible between three segments only.
+        // A grid of a single triangle is possible only between three segments.
         grid.is_triangular = triangle_.count == 1 && (!fineness.max_error || is_straight);
         if (grid.is_triangular && !is_straight) grid.segments = std::max(grid.segments, 2u);
         grid.rows = fineness.max_error ? 1 : grid.segments;
@@ -47,8 +47,9 @@ public:
     }
 
 private:
-    /// Lengths on the surface above the lines from the base point to the corners, at equal steps, of the longest line
-    /// each. Towards the corners the lines to the apex make a small angle with the surface, so the steps grow.
+    /// Cumulative lengths on the surface above the lines from the base point to the corners, at equal steps along the
+    /// lines. Each step counts with the longest of the three. Towards the corners, lines to the apex make a small angle
+    /// with the surface, so the steps grow.
     std::vector<double> lengths_to_corners() const {
         std::vector<double> lengths{0};
         std::array<Vec3, 3> before;
@@ -101,8 +102,8 @@ private:
         return errors;
     }
 
-    /// Above a point of a triangle, given by its coordinates in a third: base point, corners i and j; or in an
-    /// undivided triangle.
+    /// The surface point above a point of a triangle. `base` are the coordinates of that point: in a third, those of
+    /// the base point and of corners i and j; otherwise those in the undivided triangle.
     SurfacePoint above(u32 third, const Vec3& base) const {
         const Barycentric from(base[0], base[1], base[2], 0);
         const u8 side = cells_[third].side_at(from, zero_);
@@ -111,8 +112,8 @@ private:
             .point;
     }
 
-    /// Above the point of a third at `share` of the way from the base point, or the centre of an undivided triangle, to
-    /// the point at `along` of the edge.
+    /// The surface point above the point at `share` of the way from the base point, or the centre of an undivided
+    /// triangle, to the point at `along` of the edge of this third.
     SurfacePoint above(u32 third, double share, double along) const {
         const double i = share * (1 - along), j = share * along;
         if (triangle_.count == 3) return above(third, {1 - share, i, j});
@@ -122,7 +123,8 @@ private:
         return above(0, base);
     }
 
-    /// How far the crease reaches into a triangle at this share of the edge.
+    /// Returns how far the crease reaches into a triangle at this share of the edge, as a share of the way to the base
+    /// point.
     static double inset_at(const Row& edge, double along) {
         const auto next =
             std::max<std::ptrdiff_t>(1, std::ranges::lower_bound(edge.shares, along) - edge.shares.begin());

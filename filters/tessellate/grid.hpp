@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The triangles above a triangle of the mesh.
+/// Builds the triangles above a triangle of the mesh.
 
 #include <span>
 
@@ -8,19 +8,19 @@
 
 namespace scanmill::tessellation {
 
-/// Vertices along an edge or inside a triangle, with their shares of the way.
+/// Vertices along an edge or inside a triangle, with their shares of the row's length.
 struct Row {
     std::vector<u32> vertices;
     std::vector<double> shares;
     std::vector<double> insets{};  ///< on an edge: Sample::inset
 };
 
-/// The points inside a triangle: on `rows` - 1 triangles around the base point, with the fewer segments the smaller
-/// these are.
+/// The points inside a triangle. They are on `rows` - 1 triangles around the base point. The smaller such a triangle
+/// is, the fewer segments it has.
 struct Grid {
     unsigned segments = 1, rows = 1;
-    bool is_triangular = false;  ///< instead an undivided triangle has a triangular grid
-    std::vector<double> shares;  ///< rows between the base point and the edges; the last one is the edges'
+    bool is_triangular = false;  ///< an undivided triangle has a triangular grid instead
+    std::vector<double> shares;  ///< by row: share of the way from the base point to the edges; the last row is on them
     std::vector<SurfacePoint> points;
     u32 first_vertex = 0;
     double worst = 0;  ///< distance found between the triangles and the surface
@@ -29,8 +29,8 @@ struct Grid {
     unsigned segments_of(unsigned r) const { return (segments * r + rows - 1) / rows; }
 };
 
-/// Numbers of the points on triangles around a base point: the base point, those on the lines from there to the
-/// corners, those of the thirds.
+/// Numbers of the points on triangles around a base point: first the base point, then those on the lines from there to
+/// the corners, then those of the thirds.
 class ThirdsNumbers {
 public:
     explicit ThirdsNumbers(const Grid& grid) : grid_(grid), before_(grid.rows + 1, 0) {
@@ -50,11 +50,13 @@ private:
     std::vector<u32> before_;  ///< inner points of a third in the rows before
 };
 
-/// The inner vertex of an undivided triangle of level n >= 3, given by its steps from corner 0 to corners 1 and 2.
+/// Number of an inner vertex of an undivided triangle of level n >= 3, given by its steps from corner 0 to corners 1
+/// and 2.
 inline u32 grid_vertex(u32 i, u32 j) { return (i + j - 1) * (i + j - 2) / 2 + j - 1; }
 
-/// Triangles between a row on an edge and a row inside the triangle, both in the edge's direction: the row with the
-/// smaller next share goes on, the edge's if they are equal. Calls add(a, b, c) with a and b in one row.
+/// Makes the triangles between a row on an edge and a row inside the triangle, both in the edge's direction. The row
+/// with the smaller next share goes on; if the shares are equal, the edge's row does. Calls add(a, b, c) with a and b
+/// in one row.
 template <class Add>
 void join(const Row& edge, const Row& inner, Add&& add) {
     std::size_t i = 0, j = 0;
@@ -69,7 +71,7 @@ void join(const Row& edge, const Row& inner, Add&& add) {
         }
 }
 
-/// `count` points at equal distances. A single one has no share.
+/// A row of `count` points at equal distances. The share of a single point is 0.
 template <class VertexAt>
 Row inner_row(u32 count, VertexAt&& vertex_at) {
     Row row;
@@ -80,8 +82,8 @@ Row inner_row(u32 count, VertexAt&& vertex_at) {
     return row;
 }
 
-/// Calls add(third, a, b, c) for the triangles of rows around a base point, whose inner vertices begin at `first`; a
-/// and b are in one row, c is in the next or the one before.
+/// Calls add(third, a, b, c) for the triangles of rows around a base point, whose inner vertices begin at `first`. a
+/// and b are in one row; c is in the next row or the one before.
 template <class Add>
 void connect_thirds(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
     const ThirdsNumbers numbers(grid);
@@ -97,7 +99,7 @@ void connect_thirds(const Grid& grid, u32 first, const std::array<Row, 3>& edges
     }
 }
 
-/// The same for a triangular grid.
+/// Calls add(0, a, b, c) for the triangles of a triangular grid, whose inner vertices begin at `first`.
 template <class Add>
 void connect_triangular(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
     const u32 n = grid.segments;
@@ -120,8 +122,8 @@ void connect_triangular(const Grid& grid, u32 first, const std::array<Row, 3>& e
         }
 }
 
-/// Calls add(third, a, b, c) for the triangles between the points of a grid, which begin at `first`, and those on the
-/// edges; corners may be equal.
+/// Calls add(third, a, b, c) for the triangles between the points of a grid, which begin at `first`, and the points on
+/// the edges. Corners may be equal.
 template <class Add>
 void connect(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
     grid.is_triangular ? connect_triangular(grid, first, edges, add) : connect_thirds(grid, first, edges, add);
@@ -129,11 +131,12 @@ void connect(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&&
 
 /// Limits of a grid's refinement.
 struct Fineness {
-    std::optional<double> max_error;  ///< nothing: as fine as the grid's segments, or those of its edges
-    unsigned most = 1;  ///< segments
+    std::optional<double> max_error;  ///< if empty: as fine as the grid's segments, or those of its edges
+    unsigned most = 1;  ///< largest number of segments
 };
 
-/// Sets everything but the first vertex. `edges` are vertices with these positions. `zero`: values up to it are 0.
+/// Sets all members but the first vertex. `edges` are vertices with the positions `points`. Values up to `zero` count
+/// as 0.
 void build(Grid& grid, const PatchComplex& patches, const TriangleTets& triangle, const std::array<Row, 3>& edges,
            std::span<const SurfacePoint> points, double zero, const Fineness& fineness);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Parameter at which a cubic with at most one sign change gets the sign; `never`: none.
+/// Parameter at which a cubic with at most one sign change gets the sign; `never` if it does not.
 double change_to(double sign, const std::array<double, 4>& weights, double zero) {
     if (sign * weights[3] < 0) return never;
     if (sign * weights[0] >= -zero) return 0;
@@ -55,7 +55,7 @@ TetFunctions::Hit TetFunctions::hit(u8 side, const Barycentric& base, const Bary
     bool is_other = false;
     if (other_) {
         const double there = change_to(sign, patch_along(other_->weights(), in_other(base), in_other(to)), zero);
-        // The larger function is positive where one is, negative where both are.
+        // The larger function is positive where one function is positive, and negative where both are.
         is_other = (combine_ == Combine::max) == (side == 1) ? there < t : there > t;
         if (is_other) t = there;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Intersections of lines from the mesh to the apexes with the surface.
+/// Intersects lines from the mesh to the apexes with the surface.
 
 #include <array>
 #include <optional>
@@ -15,28 +15,29 @@ struct SurfacePoint {
     u8 side = 1;  ///< 0: inside the mesh
 };
 
-/// The function, or the two functions, of a tetrahedron. Coordinates are those of its row.
+/// The function of a tetrahedron, or its two functions. Barycentric coordinates have the order of the tetrahedron's
+/// row.
 class TetFunctions {
 public:
     TetFunctions(const PatchComplex& patches, u32 row);
 
     const PatchCell& own() const { return own_; }
     bool has_other() const { return other_.has_value(); }
-    /// The partner's.
+    /// The partner's function. Pre: has_other().
     const PatchCell& other() const { return *other_; }
     Combine combine() const { return combine_; }
 
-    /// The side of the mesh on which the surface is seen from a point of it. Values up to `zero` are 0.
+    /// The side of the mesh on which the surface is at `base`, a point of the mesh. Values up to `zero` count as 0.
     u8 side_at(const Barycentric& base, double zero) const;
 
     struct Hit {
         SurfacePoint point;
         bool is_at_base;
         bool is_other;  ///< the partner's function holds there
-        bool is_missed;  ///< two functions have no surface on the line; the point is its end
+        bool is_missed;  ///< neither of two functions has a surface on the line; the point is its end
     };
-    /// The point of the surface on the line from a point of the mesh to one off it, on that side. Throws Error if one
-    /// function has none.
+    /// Returns the point of the surface on the line from `base`, a point of the mesh, to `to`, a point on the side
+    /// `side`. Throws Error if a single function has no such point.
     Hit hit(u8 side, const Barycentric& base, const Barycentric& to, double zero) const;
 
 private:
@@ -48,8 +49,8 @@ private:
     Combine combine_;
 };
 
-/// The side on which the larger or smaller of two values has the surface; where it is 0, that on which the one that is
-/// not changes its sign.
+/// Returns the side of the surface for the larger or smaller of two values. If that value is 0 and the other is not, it
+/// is the side on which the other value changes its sign.
 u8 side_of(double one, double other, Combine combine, double zero);
 
 }  // namespace scanmill::tessellation

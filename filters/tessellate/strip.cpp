@@ -29,7 +29,7 @@ public:
         set_crossings();
     }
 
-    /// Where the surface crosses the edge between its ends, ascending.
+    /// Shares of the edge, ascending, at which the surface crosses it between its ends.
     const std::vector<double>& crossings() const { return crossings_; }
 
     Sample sample(std::array<double, 2> share) const {
@@ -64,7 +64,7 @@ public:
     double distance_at(const Vec3& point, std::size_t half, u8 side) const {
         const auto& gap = gaps_[half][side];
         const PatchCell* cell = gap ? &gap->own() : &thirds_[half][side]->own();
-        // A crease above the other triangle: there the function is continued.
+        // If the crease is above the other triangle, the function is continued there.
         if (gap && edge_.is_sharp && cell->coordinates(point)[3] < 0 && thirds_[1 - half][side]->has_other())
             cell = &thirds_[1 - half][side]->other();
         return std::abs(cell->first_order_distance(point));
@@ -81,7 +81,7 @@ private:
         at[of == 0 ? second : first] = share;
         return at;
     }
-    /// In the tetrahedra in the gap.
+    /// Coordinates of a point of the edge in the tetrahedra of the gap.
     static Barycentric in_gap(std::size_t of, double share) {
         return of == 0 ? Barycentric(0, 1 - share, share, 0) : Barycentric(0, share, 1 - share, 0);
     }
@@ -96,9 +96,9 @@ private:
             const double one = patch_blossom(weights(of), a, a, b), two = patch_blossom(weights(of), a, b, b);
             if (!((one < 0 && two > 0) || (one > 0 && two < 0))) continue;
             const double share = one / (one - two);
-            // Before or after it the edge is on the surface up to rounding.
+            // Before or after the crossing, the edge is on the surface up to rounding.
             if (std::min(std::abs(one) * share, std::abs(two) * (1 - share)) <= zero_) continue;
-            // The function that is not 0 there may hold instead.
+            // At the crossing, the other function, which is not 0 there, may hold.
             if (edge_.is_sharp && value(1 - of, share) * (edge_.combine == Combine::max ? 1 : -1) > zero_) continue;
             crossings_.push_back(share);
         }
@@ -125,7 +125,8 @@ private:
         for (unsigned k = 1; k < strip.columns(); ++k) strip.numbers.push_back(strip.numbers.back());
     }
 
-    /// Lines to the segments from an apex to the point between both apexes, and from there to the other apex.
+    /// Lifts along lines to two segments: from the first apex to the point between both apexes, and from there to the
+    /// second apex.
     void lift_fan(Strip& strip, const Sample& sample) const {
         for (unsigned k = 0; k < strip.columns(); ++k) {
             const bool is_second = 2 * k > strip.fan;
@@ -137,7 +138,7 @@ private:
         }
     }
 
-    /// A straight line between the points on the two faces, in one segment after the middle column.
+    /// Closes the gap with a straight line between the points on the two faces, in one segment after the middle column.
     void lift_open(Strip& strip, Sample& sample) const {
         sample.is_open = true;
         std::array<SurfacePoint, 2> points;
@@ -156,9 +157,10 @@ private:
         }
     }
 
-    // Creases. From the inside of the first triangle to the inside of the second lead lines from points of the triangle
-    // to its apex, lines from the edge to points between the apexes, and lines from points of the second triangle. On
-    // this way the function that holds changes from the first triangle's to the second's.
+    // Creases. The way from the inside of the first triangle to the inside of the second has three parts. The first has
+    // lines from points of the first triangle to its apex. The second has lines from the edge to points between the
+    // apexes. The third has lines from points of the second triangle to its apex. On this way, the function that holds
+    // changes from the first triangle's to the second's.
 
     struct Place {
         std::size_t zone;  ///< 0: first triangle, 1: gap, 2: second triangle
@@ -183,8 +185,9 @@ private:
         return {hit.point, hit.is_other != (of == 1), false, hit.is_missed};
     }
 
-    /// The place where the function changes, between one where the first triangle's holds and one where the second's
-    /// does: the nearest numbers on both sides of it. Empty if the crease leaves the tetrahedra beside the edge.
+    /// Finds where the function changes, between a position where the first triangle's holds and one where the second's
+    /// does. Returns the nearest numbers on both sides of the change. Empty if the crease leaves the tetrahedra beside
+    /// the edge.
     std::optional<std::array<Place, 2>> change(const Sample& sample) const {
         Place low{1, 0}, high{1, 1};
         const bool is_whole = is_whole_[0] || is_whole_[1];
@@ -205,7 +208,7 @@ private:
         return std::array{low, high};
     }
 
-    /// The function of one of the two triangles at a point near the crease.
+    /// The gradient of one of the two triangles' functions at a point near the crease.
     Vec3 gradient(const Sample& sample, std::size_t of, const Place& place, const Vec3& point) const {
         const std::size_t third = place.zone / 2;
         if (place.zone == 1) return gaps_[of][sample.side]->own().gradient(point);
@@ -229,7 +232,8 @@ private:
             return;
         }
         const Place& crease = (*change)[0];
-        // Where a plane of the object contains the line, the surface leaps along it: one of the two is on the crease.
+        // If a plane of the object contains the line, the surface jumps along it. One of the two ends is then on the
+        // crease.
         const std::array<Found, 2> ends{found(sample, (*change)[0]), found(sample, (*change)[1])};
         const unsigned half = strip.fan / 2;
         std::vector<Found> way;
@@ -252,7 +256,7 @@ private:
         u32 on_crease = none, on_edge = none;
         for (unsigned k = 0; k < strip.columns(); ++k) {
             const bool is_before = k < half;
-            // The columns before the crease are on the part of the way before it.
+            // If the crease is above a triangle, all columns of that triangle's half are on the crease.
             if (k == half || (is_before && crease.zone == 0) || (!is_before && crease.zone == 2)) {
                 if (on_crease == none)
                     on_crease = add(strip, point, normals[1]);
@@ -270,11 +274,11 @@ private:
         }
     }
 
-    /// The point at `share` of the way from the face of the first triangle to the crease, or from that of the second.
+    /// The position at `share` of the way to the crease from the face of the first or second triangle.
     static Place on_way(const Place& crease, double share, bool is_first) {
         const double start = is_first ? 0 : 1;
         if (crease.zone == 1) return {1, start + share * (crease.at - start)};
-        // First through the gap, then over the other triangle.
+        // The way leads first through the gap, then over the other triangle.
         if (share <= 0.5) return {1, start + 2 * share * (1 - 2 * start)};
         return {crease.zone, (2 * share - 1) * crease.at};
     }
@@ -286,8 +290,8 @@ private:
     std::vector<double> crossings_;
 };
 
-/// Equally spaced samples, and one where the surface crosses the edge: the nearest is moved there if it is nearer than
-/// a quarter of the spacing.
+/// Returns equally spaced samples, and one where the surface crosses the edge. The nearest sample is moved to the
+/// crossing if it is nearer than a quarter of the spacing.
 std::vector<std::array<double, 2>> shares_of(const std::vector<double>& crossings, unsigned segments) {
     std::vector<std::array<double, 2>> shares;
     for (unsigned k = 1; k < segments; ++k)
@@ -319,9 +323,9 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
         const bool is_first_on_surface = s == 0 || strip.samples[s - 1].is_on_surface;
         const std::size_t other = is_first_on_surface ? s + 1 : s;
         const u8 side = other > 0 && other < last ? strip.samples[other - 1].side : u8(1);
-        // Between points on the edge all columns are one.
+        // Between points on the edge, all columns coincide.
         const bool is_flat = is_first_on_surface && (s + 1 == last || strip.samples[s].is_on_surface);
-        // Only the faces' borders are on the surface.
+        // In an open strip, only the borders of the faces are on the surface.
         const bool is_open = (s > 0 && strip.samples[s - 1].is_open) || (s + 1 < last && strip.samples[s].is_open);
         for (unsigned k = 0; k < (is_flat ? 1 : strip.columns()); ++k) {
             if (is_open && k > 0 && k + 1 < strip.columns()) continue;
@@ -329,7 +333,7 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
             const auto at = [&](const Vec3& p) { return lines.distance_at(p, is_second, side); };
             const Vec3 &a = position(s, k), &d = position(s + 1, k);
             errors.along = std::max(errors.along, distance_on_segment(a, d, at));
-            // The crease is on the surfaces of both.
+            // The crease is on the surfaces of both functions.
             if (edge.is_sharp && 2 * k == strip.fan)
                 errors.along =
                     std::max(errors.along,
@@ -348,7 +352,7 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
 
 bool refine(unsigned& along, unsigned& across, const Errors& errors, double max_error, unsigned most,
             unsigned most_across) {
-    // More columns make the triangles lie along the lines along the rows, so these get a smaller share of the error.
+    // With more columns, the triangles follow the lines along the rows. These lines get a smaller share of the error.
     const bool is_long = errors.along > share_along * max_error, can_lengthen = 2 * along <= most;
     const bool are_rows_enough = !is_long || (!can_lengthen && errors.inside > errors.along);
     const bool widen =

@@ -44,7 +44,7 @@ std::vector<TriangleTets> triangles_of(const PatchComplex& patches) {
         t.count = t.rows[1][1] == none ? 1 : 3;
         for (const auto& of_side : t.rows)
             if (std::ranges::count(of_side, none) != 3 - t.count) throw_incomplete(f);
-        // A second function holds in a third, not in a whole triangle.
+        // Only thirds of a triangle may have a second function, not a whole triangle.
         if (t.count == 1)
             for (const auto& of_side : t.rows)
                 if (patches.partners[of_side[0]] != PatchComplex::no_partner) throw_incomplete(f);
@@ -54,7 +54,7 @@ std::vector<TriangleTets> triangles_of(const PatchComplex& patches) {
     return triangles;
 }
 
-/// Sets the edges of the triangles, too.
+/// Returns the edges of the triangles. Also sets TriangleTets::edges.
 std::vector<EdgeTets> edges_of(std::vector<TriangleTets>& triangles) {
     std::vector<HalfEdge> halves;
     for (u32 f = 0; f < triangles.size(); ++f)

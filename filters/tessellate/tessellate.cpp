@@ -20,7 +20,7 @@ constexpr std::size_t chunk = 64;  // edges or triangles
 constexpr unsigned uniform_fan = 4, least_fan = 2;  // segments of a fan
 constexpr unsigned most_subdivision = 1024;
 constexpr double least_decrease = 0.7;  // least ratio of the errors before and after the segments are doubled
-constexpr double rounding = 1e-14;  // share of the diagonal: below it a value at a point of the mesh is 0
+constexpr double rounding = 1e-14;  // values at points of the mesh below this share of the diagonal count as 0
 
 Barycentric corner(u32 i) {
     Barycentric at = Barycentric::Zero();
@@ -138,7 +138,7 @@ private:
         const double worst = build(most);
         if (distance_left) *distance_left = 0;
         if (worst <= *max_error_ || segments_) return;
-        // The error falls with the square of the segments, but not where the surface leaps.
+        // The error falls with the square of the number of segments, but not where the surface jumps.
         const bool can_double = 2 * most <= most_subdivision;
         const double coarse = can_double ? worst : build(most / 2), fine = can_double ? build(2 * most) : worst;
         const bool leaps = fine > least_decrease * coarse;
@@ -151,19 +151,19 @@ private:
         unsigned enough = can_double ? 2 * most : most;
         for (double estimate = fine; estimate > *max_error_ && enough <= most_subdivision; enough *= 2)
             estimate *= fine / coarse;
-        error.set_hint(leaps                        ? "the surface leaps there; a larger max-error needs fewer segments"
+        error.set_hint(leaps                        ? "the surface jumps there; a larger max-error needs fewer segments"
                        : enough <= most_subdivision ? fmt::format("subdivision {} suffices", enough)
-                                                    : "a larger max-error, or `decimate` with a smaller one");
+                                                    : "use a larger max-error, or `decimate` with a smaller one");
         throw error;
     }
 
     static void require_countable(std::size_t vertices) {
         if (vertices >= none)
             throw Error("the mesh would have {} vertices; at most {} are possible", vertices, none - 1)
-                .hint("a smaller subdivision, or a larger max-error, makes fewer");
+                .hint("use a smaller subdivision, or a larger max-error");
     }
 
-    // The mesh: vertices of the mesh below, then strip by strip, then grid by grid.
+    // The result: vertices of the mesh below, then strip by strip, then grid by grid.
 
     void number_corners() {
         number_of_corner_.assign(patches_.positions.size(), none);
@@ -220,7 +220,7 @@ private:
         }
     }
 
-    /// The edges along creases, and the normals beyond them.
+    /// Collects the edges along creases, and the normals beyond them.
     void collect_creases() {
         beyond_.resize(points_.size());
         std::vector<bool> is_sharp(corners_, false);
@@ -235,7 +235,7 @@ private:
             is_sharp[number_of_corner_[edge.a]] = is_sharp[number_of_corner_[edge.b]] = true;
         }
         std::ranges::sort(creases_);
-        // The mean of the normals of the triangles at a vertex.
+        // At the ends of creases, the normal is the mean of the normals of the triangles there.
         for (u32 v = 0; v < corners_; ++v)
             if (is_sharp[v]) points_[v].normal = Vec3::Zero();
         for (std::size_t f = 0; f < structure_.triangles.size(); ++f)
@@ -298,12 +298,12 @@ private:
     const std::function<unsigned(Edge)>& segments_;
     Execution& execution_;
     PatchStructure structure_;
-    double zero_ = 0;  ///< values up to it are 0
+    double zero_ = 0;  ///< values up to it count as 0
     std::vector<Strip> strips_;
     std::vector<Grid> grids_;
     std::vector<u32> number_of_corner_;  ///< by point of the complex
     u32 corners_ = 0;
-    std::vector<SurfacePoint> points_;  ///< points of the corners and strips; at the end of the grids, too
+    std::vector<SurfacePoint> points_;  ///< points of the corners and strips; in the end also those of the grids
     std::vector<std::array<Vec3, 3>> corner_normals_;  ///< normals at the corners of the mesh's triangles
     bool has_creases_ = false;
     struct Beyond {

@@ -224,7 +224,7 @@ TEST(Tessellate, AMaxErrorThatNoSubdivisionMeets_IsRefused_AndIsNotALeap) {
     double left = 0;
     const Error error = error_of([&] { tessellate(patches, {16, Length(1e-9)}, execution, &left); });
     EXPECT_THAT(error.sentence(), HasSubstr("with 16 segments per edge"));
-    EXPECT_EQ(error.hint(), "a larger max-error, or `decimate` with a smaller one");
+    EXPECT_EQ(error.hint(), "use a larger max-error, or `decimate` with a smaller one");
     EXPECT_EQ(left, 0);
 }
 
