@@ -9,17 +9,17 @@ SCANMILL_FILTER() {
     return Declare<P>("virtual-probe", 2)
         .summary("Makes the touches of a probe plan against a mesh, as a measuring machine would.")
         .source("Wang 2006, chapter 5; sphere tracing: Hart 1996")
-        .ties("None: of equally near triangles any gives the same contact.")
-        .not_finite("Refused, with their number and the first of them.")
+        .ties("None: all equally near triangles give the same contact.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"uncertainty", "touch", "feature", "approach"})
-        .in<ProbePlan>("probes", "The plan; touches that are not made are passed over.")
+        .in<ProbePlan>("probes", "The plan. Touches that cannot be made are skipped.")
         .made_by("probe-planner")
         .in<TriangleMesh>("mesh", "The part that is touched, in the frame of the plan.")
         .out<PointCloud>("points", "Measured points of the edges, compensated by the radius along `approach`.")
         .param("noise", &P::noise, "Standard deviation of the machine's error in each coordinate.", at_least(0))
         .param("reference-error", &P::reference_error,
-               "Reference points are moved at random across the edge, by at most this; below the radius of the plan's "
-               "ball.",
+               "Largest distance by which reference points are moved at random across the edge; below the radius of "
+               "the plan's ball.",
                at_least(0))
         .metric("points", Unit::count, "Touches that met the mesh.", headline)
         .metric("missed", Unit::count, "Touches without contact.", headline, smaller_is_better)

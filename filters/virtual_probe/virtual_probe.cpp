@@ -19,17 +19,18 @@ namespace scanmill {
 
 namespace {
 
-/// In radii: nearer than this is contact.
+/// Largest gap between ball and mesh that counts as contact, as a share of the radius.
 constexpr double contact = 1e-9;
-/// A ball that is still on its way after so many steps slides along a face, nearer than 1e-4 radii: contact, too.
+/// A ball that still moves after so many steps slides along a face, nearer than 1e-4 radii. This counts as contact,
+/// too.
 constexpr int most_steps = 100'000;
 
 /// A larger share of missed touches suggests that plan and mesh are of different parts or in different positions.
 constexpr double most_missed = 0.1;
 
-/// The centre of the ball at its first contact with the mesh, on the segment of length `length` from `start` along
-/// `motion`; nothing without contact, or if the ball meets the mesh at `start`. By sphere tracing: the mesh is at least
-/// its distance away.
+/// Returns the centre of the ball at its first contact with the mesh. The centre moves by `length` from `start` along
+/// `motion`. Empty without contact, or if the ball meets the mesh at `start`. In sphere tracing, each step is as long
+/// as the ball's distance from the mesh.
 std::optional<Vec3> met(const TriangleTree& mesh, const Vec3& start, const Vec3& motion, double length, double radius) {
     u32 hint = NearestTriangle::none;
     double travelled = 0;
@@ -47,7 +48,7 @@ std::optional<Vec3> met(const TriangleTree& mesh, const Vec3& start, const Vec3&
     return {};
 }
 
-/// Uniform in the unit disc. Without angles, whose sines differ between processors.
+/// A random point, uniform in the unit disc. It is found without angles, whose sines differ between processors.
 Eigen::Vector2d in_disc(Random& random) {
     for (;;) {
         const Eigen::Vector2d p(random.uniform(-1, 1), random.uniform(-1, 1));
@@ -55,7 +56,7 @@ Eigen::Vector2d in_disc(Random& random) {
     }
 }
 
-/// The reported position of a touch, or nothing if it is missed.
+/// Returns the reported position of a touch; empty if the touch is missed.
 std::optional<Vec3> reported(const ProbePlan& plan, const ProbeTouch& touch, const TriangleTree& mesh,
                              double reference_error, double noise, Random random) {
     const Vec3& u = touch.approach;
@@ -74,7 +75,7 @@ std::optional<Vec3> reported(const ProbePlan& plan, const ProbeTouch& touch, con
     return *centre + error - plan.radius * u;
 }
 
-// Refusals.
+// Checks of the input.
 
 double length_of(const Length& length, std::string_view name) {
     const double value = length.value();
@@ -83,7 +84,7 @@ double length_of(const Length& length, std::string_view name) {
     return value;
 }
 
-/// The rows of the touches that are made, in their order.
+/// Returns the rows of the touches that are made, in their order.
 std::vector<u32> made_touches(const ProbePlan& plan) {
     std::vector<u32> rows;
     for (u32 row = 0; row < plan.touches.size(); ++row)
@@ -104,8 +105,8 @@ void require_directions(const ProbePlan& plan, std::span<const u32> rows) {
                 .hint("plan again with `probe-planner`");
         if (!(std::abs(touch.approach.norm() - 1) <= most) || !(touch.tangent.cross(touch.approach).norm() >= 0.5))
             throw Error(
-                "the touch in row {} has an approach of length {:.6g} at {:.4g} of a right angle to its "
-                "tangent; a unit vector across the edge is needed",
+                "the touch in row {} has an approach of length {:.6g}, and its cross product with the tangent has the "
+                "length {:.4g}; a unit vector across the edge is needed",
                 row, touch.approach.norm(), touch.tangent.cross(touch.approach).norm())
                 .hint("plan again with `probe-planner`");
     }
@@ -121,8 +122,8 @@ void require_plan(const ProbePlan& plan, const TriangleMesh& mesh) {
 void require_guided(double reference_error, double radius) {
     if (!(reference_error < radius))
         throw Error(
-            "reference-error is {} u, the plan's ball has the radius {} u: a ball that is not larger than the "
-            "error cannot be guided",
+            "reference-error is {} u and the plan's ball has the radius {} u: the ball must be larger than the error "
+            "to meet the edge first",
             number_text(reference_error), number_text(radius))
             .hint("use a smaller reference-error, or plan with a larger ball");
 }

@@ -262,18 +262,17 @@ TEST(VirtualProbeRefusals, LengthsRadiusAndDirections) {
     EXPECT_EQ(refusal(plan, wedge(1), error).sentence(), "reference-error is nan u; it must be 0 or more");
     error.reference_error = 2;
     EXPECT_EQ(refusal(plan, wedge(1), error).sentence(),
-              "reference-error is 2 u, the plan's ball has the radius 2 u: a ball that is not larger than the error "
-              "cannot be guided");
+              "reference-error is 2 u and the plan's ball has the radius 2 u: the ball must be larger than the error "
+              "to meet the edge first");
     error.reference_error = 1.9;
     EXPECT_EQ(probed(plan, wedge(1), error).missed, 0u);
     EXPECT_EQ(refusal(plan_of({touch_at({0, 0, 0}, 0)}, 0), wedge(1)).sentence(),
               "the plan's ball has the radius 0 u; it must be above 0");
     ProbePlan crooked = plan, endless = plan, lengthwise = plan;
     lengthwise.touches[0].tangent = lengthwise.touches[0].approach;
-    EXPECT_EQ(
-        refusal(lengthwise, wedge(1)).sentence(),
-        "the touch in row 0 has an approach of length 1 at 0 of a right angle to its tangent; a unit vector across "
-        "the edge is needed");
+    EXPECT_EQ(refusal(lengthwise, wedge(1)).sentence(),
+              "the touch in row 0 has an approach of length 1, and its cross product with the tangent has the length "
+              "0; a unit vector across the edge is needed");
     crooked.touches[0].approach *= 2;
     endless.touches[0].start.x() = nan;
     EXPECT_THAT(refusal(crooked, wedge(1)).sentence(), HasSubstr("the touch in row 0 has an approach of length 2"));
