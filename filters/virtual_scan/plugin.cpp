@@ -10,7 +10,7 @@ SCANMILL_FILTER() {
         .summary("Scans a mesh or a shape as a real scanner would: from views, with noise, outliers and hidden parts.")
         .source("z-buffer: Catmull 1974; edge functions: Pineda 1988")
         .ties("Where two triangles are equally near along a ray, the one with the lower row is hit.")
-        .not_finite("Refused, with their number and the first of them.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"normal", "view"})
         .in<TriangleMesh>("mesh", "The surface to scan, of any topology; omit it to scan a shape.", optional)
         .out<PointCloud>("points", "The hits, view by view, with columns `normal` and `view`; outliers at the end.")
@@ -40,9 +40,9 @@ SCANMILL_FILTER() {
         .param("resolution", &P::resolution, "Distance between neighbouring rays.", above(0))
         .param("noise", &P::noise, "Standard deviation of the error along the ray.", at_least(0))
         .param("outliers", &P::outliers,
-               "Points anywhere in the enlarged bounding box, as a share of the surface points.", at_least(0),
+               "Number of points anywhere in the enlarged bounding box, as a share of the surface points.", at_least(0),
                at_most(10))
-        .param("overlap", &P::overlap, "Share that is kept of the points that an earlier view has already seen.",
+        .param("overlap", &P::overlap, "Of the points that an earlier view has already seen, this share is kept.",
                at_least(0), at_most(1))
         .param("max-angle", &P::max_angle, "Hits where ray and surface normal make a larger angle are dropped.",
                above(0), at_most(90))

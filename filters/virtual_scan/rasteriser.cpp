@@ -27,7 +27,8 @@ struct DepthImage {
     Array<u32> triangle;
 };
 
-/// Twice the signed area of a, b and (x, y); positive when they turn left. Exactly the negative for b, a.
+/// Twice the signed area of the triangle a, b, (x, y); positive if it turns left. Swapping a and b gives exactly the
+/// negative.
 double edge_function(const Vec3& a, const Vec3& b, double x, double y) {
     const bool swapped = std::pair(b.x(), b.y()) < std::pair(a.x(), a.y());
     const Vec3& from = swapped ? b : a;
@@ -36,7 +37,7 @@ double edge_function(const Vec3& a, const Vec3& b, double x, double y) {
     return swapped ? -value : value;
 }
 
-/// First and last pixel whose centre may lie in [low, high], clipped to [0, count).
+/// First pixel whose centre may lie in [low, high], and the one after the last such pixel, clipped to [0, count].
 std::pair<std::size_t, std::size_t> pixels_between(double low, double high, double start, double resolution,
                                                    std::size_t count) {
     const double first = std::floor(low / resolution - start - 0.5);
@@ -46,7 +47,7 @@ std::pair<std::size_t, std::size_t> pixels_between(double low, double high, doub
             static_cast<std::size_t>(std::clamp(last + 1, 0.0, most))};
 }
 
-/// Pre: a, b, c turn left or lie on one line.
+/// Draws a triangle into the image. Pre: a, b, c turn left or lie on one line.
 void draw(const Vec3& a, const Vec3& b, const Vec3& c, u32 row_of_triangle, const View& view, DepthImage& image) {
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     const auto [left, right] = pixels_between(low.x(), high.x(), view.left, view.resolution, view.width);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Shapes given by formulas as scenes: every ray is intersected with the surface itself, not with a mesh of it.
+/// Scenes of shapes that are given by formulas. Every ray is intersected with the surface itself, not with a mesh of
+/// it.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -22,7 +23,7 @@ namespace {
 using Shape = VirtualScanParams::Shape;
 
 struct Ray {
-    Vec3 start, direction;  // a whole line: it enters shapes before `start` too
+    Vec3 start, direction;  // a whole line: it may enter shapes before `start`
     Vec3 at(double depth) const { return start + depth * direction; }
 };
 
@@ -35,8 +36,8 @@ struct Passage {
     Vec3 normal;          ///< outwards, of the face through which the ray enters
 };
 
-/// By slabs (Kay, Kajiya 1986); among faces at the same depth the lowest axis counts. A ray within a face passes
-/// through.
+/// Intersects a ray with a box by slabs (Kay, Kajiya 1986). Among faces at the same depth, the lowest axis counts. A
+/// ray within a face passes through.
 std::optional<Passage> passage_through(const Ray& ray, const BoundingBox& box) {
     double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
     Vec3 normal = Vec3::Zero();
@@ -66,7 +67,7 @@ Hit entry_of(const Ray& ray, const BoundingBox& box, const Passage& passage) {
     return {(outwards > 0).select(box.high, (outwards < 0).select(box.low, within)), passage.normal};
 }
 
-/// The union of boxes: a ray from outside enters it where it first enters one of them.
+/// Intersects a ray with the union of boxes. A ray from outside enters it where it first enters one of them.
 std::optional<Hit> meet_boxes(const Ray& ray, std::span<const BoundingBox> boxes) {
     double first = std::numeric_limits<double>::infinity();
     std::optional<Hit> hit;
@@ -89,7 +90,7 @@ std::optional<Hit> meet_sphere(const Ray& ray, double radius) {
     return Hit{position, position / radius};
 }
 
-/// (|p|² + R² − r²)² = 4 R² (x² + y²) along the ray: a quartic in the depth, counted from the point nearest the centre.
+/// Solves (|p|² + R² − r²)² = 4 R² (x² + y²) along the ray, a quartic in the depth from the point nearest the centre.
 std::optional<Hit> meet_torus(const Ray& ray, double major, double minor) {
     const Vec3& d = ray.direction;
     const Vec3 o = ray.at(-ray.start.dot(d));
@@ -181,7 +182,7 @@ void require_apart(const Vec3& size, double large_radius, double small_radius) {
                               room));
 }
 
-/// The hole that contains the point, its wall excluded; else nullptr.
+/// Returns the hole that contains the point, its wall excluded; nullptr if there is none.
 const HoledBlock::Hole* hole_round(const HoledBlock& block, const Vec3& point) {
     for (const HoledBlock::Hole& hole : block.holes) {
         const double x = point.x() - hole.x, y = point.y() - hole.y;
@@ -201,15 +202,15 @@ double way_out(const Ray& ray, const HoledBlock::Hole& hole) {
     return middle + std::sqrt(std::max(square, 0.0) / speed);
 }
 
-/// Around the origin: the large hole in the middle, the small ones at (± 0.35 x, ± 0.35 y). Throws Error when holes
-/// would touch each other or the block's sides. Pre: sizes above 0.
+/// A block around the origin, with the large hole in the middle and the small ones at (± 0.35 x, ± 0.35 y). Throws
+/// Error if holes would touch each other or the block's sides. Pre: sizes above 0.
 HoledBlock holed_block(const Vec3& size, double large_radius, double small_radius) {
     require_apart(size, large_radius, small_radius);
     const double x = eccentricity * size.x(), y = eccentricity * size.y(), r = small_radius;
     return {{-size / 2, size / 2}, {{{0, 0, large_radius}, {-x, -y, r}, {x, -y, r}, {-x, y, r}, {x, y, r}}}};
 }
 
-/// The walls of the holes belong to the surface.
+/// Intersects a ray with the block. The walls of the holes belong to the surface.
 std::optional<Hit> meet_holed_block(const Ray& ray, const HoledBlock& block) {
     const auto passage = passage_through(ray, block.box);
     if (!passage) return {};
@@ -217,7 +218,7 @@ std::optional<Hit> meet_holed_block(const Ray& ray, const HoledBlock& block) {
     const HoledBlock::Hole* hole = hole_round(block, entry.position);
     if (!hole) return entry;
     if (ray.direction.x() == 0 && ray.direction.y() == 0) return {};
-    // Holes do not meet, so solid or the outside lies behind the wall of this one.
+    // Holes do not meet. So the solid or the outside lies behind the wall of this one.
     const double depth = way_out(ray, *hole);
     if (!(depth < passage->leave)) return {};
     Vec3 position = ray.at(depth);
@@ -250,7 +251,7 @@ BoundingBox bounds_of(const Hyperboloid& surface) {
     return {{-r, -r, 0}, {r, r, std::numbers::sqrt2 * surface.height}};
 }
 
-/// Hits from either side count; the normal is turned against the ray.
+/// Intersects a ray with the surface. Hits from either side count; the normal is turned against the ray.
 std::optional<Hit> meet_hyperboloid(const Ray& ray, const Hyperboloid& surface) {
     const Vec3& d = ray.direction;
     const Vec3 o = ray.at(-ray.start.dot(d));  // the point nearest the origin: depths are small from there
@@ -275,7 +276,7 @@ struct Cone {
     double radius, height, up;
 };
 
-/// Rounding at the circular edge: a ray that passes there must not pass between two surfaces.
+/// Tolerance at the circular edge: despite rounding, a ray that passes there must not pass between two surfaces.
 constexpr double edge_rounding = 1e-12;
 
 /// The point where the ray enters the cone through its slope.
@@ -304,12 +305,12 @@ std::optional<Hit> earlier(const Ray& ray, const std::optional<Hit>& a, const st
     return (b->position - a->position).dot(ray.direction) < 0 ? b : a;
 }
 
-/// Two equal cones with a common base.
+/// Intersects a ray with two equal cones with a common base.
 std::optional<Hit> meet_bicone(const Ray& ray, double radius, double height) {
     return earlier(ray, meet_cone(ray, {radius, height, 1}), meet_cone(ray, {radius, height, -1}));
 }
 
-/// A cone above the lower half of a sphere.
+/// Intersects a ray with a cone above the lower half of a sphere.
 std::optional<Hit> meet_cone_on_hemisphere(const Ray& ray, double radius, double height) {
     std::optional<Hit> below = meet_sphere(ray, radius);
     if (below && below->position.z() > edge_rounding * radius) below.reset();
@@ -348,7 +349,7 @@ double dimension_of(const Length& length, const std::string& name) {
             .hint(fmt::format("give it in the scan's own unit, as {} u", number_text(length.amount())));
     const double dimension = length.value();
     if (!(dimension > 0) || !std::isfinite(dimension))
-        throw Error("{} is {} u; it must be above 0", name, dimension).hint("give it a size, as 1 u");
+        throw Error("{} is {} u; it must be above 0", name, dimension).hint("give it a size, for example 1 u");
     if (!(dimension >= least_size && dimension <= largest_size))
         throw Error("{} is {:.3g} u; {:.0e} to {:.0e} u is supported", name, dimension, least_size, largest_size)
             .hint("give all sizes in another unit, as numbers nearer 1");
@@ -368,7 +369,7 @@ std::vector<double> dimensions_of(const Kind& kind, std::span<const Length> size
     return dimensions;
 }
 
-/// The first hit of a ray on the shape, and the bounds of the shape.
+/// Returns a function that finds the first hit of a ray on the shape, and the bounds of the shape.
 std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<double>& size) {
     switch (shape) {
         case Shape::none: break;
@@ -377,7 +378,7 @@ std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<doubl
                     {Vec3::Constant(-size[0]), Vec3::Constant(size[0])}};
         case Shape::torus: {
             if (!(size[1] < size[0]))
-                throw Error("the torus's tube of radius {} u does not leave a hole at radius {} u", size[1], size[0])
+                throw Error("the torus's tube of radius {} u leaves no hole in a ring of radius {} u", size[1], size[0])
                     .hint("the second size must be below the first");
             const Vec3 corner(size[0] + size[1], size[0] + size[1], size[1]);
             return {[R = size[0], r = size[1]](const Ray& ray) { return meet_torus(ray, R, r); }, {-corner, corner}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The sign changes of a polynomial, by bisection between those of its derivative: slower than Ferrari's formulas, and
-/// without their loss of digits.
+/// Finds the sign changes of a polynomial, by bisection between those of its derivative. This is slower than Ferrari's
+/// formulas, but loses no digits.
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace scanmill::scan {
 
-/// coefficients[0] + coefficients[1] x + …
+/// Returns coefficients[0] + coefficients[1] x + …
 template <std::size_t Size>
 double evaluate(const std::array<double, Size>& coefficients, double x) {
     double value = 0;
@@ -17,8 +17,8 @@ double evaluate(const std::array<double, Size>& coefficients, double x) {
     return value;
 }
 
-/// All x in (low, high] where the polynomial changes its sign, ascending, each to within `width`. Roots without a
-/// change of sign are not found, and two sign changes nearer than `width` may be missed as such a root.
+/// Returns all x in (low, high] where the polynomial changes its sign, ascending, each to within `width`. Roots without
+/// a change of sign are not found. Two sign changes nearer than `width` may be missed, like such a root.
 template <std::size_t Size>
 std::vector<double> sign_changes(const std::array<double, Size>& coefficients, double low, double high, double width) {
     if constexpr (Size < 2) {

@@ -11,8 +11,8 @@ namespace scanmill::scan {
 namespace {
 
 std::vector<Vec3> fibonacci_sphere(std::size_t count) {
-    // The golden angle π (3 − √5): turned by products instead of angles, because sin and cos differ between
-    // processors.
+    // Cosine and sine of the golden angle π (3 − √5). Directions are turned by products instead of angles, because sin
+    // and cos differ between processors.
     constexpr double cosine = -0.73736887807831989, sine = 0.67549029426152362;
     std::vector<Vec3> directions;
     double x = 1, y = 0;
@@ -51,7 +51,7 @@ std::vector<Vec3> view_directions(std::span<const double> views) {
     if (views.size() == 1) {
         const double count = views.front();
         if (!(count >= 1 && count <= most) || count != std::floor(count))
-            throw Error("views is {}; one number must be a whole one from 1 to {}", count, most)
+            throw Error("views is {}; a single number must be a whole number from 1 to {}", count, most)
                 .hint("three numbers per view give directions: [0, 0, 1] looks from above");
         return fibonacci_sphere(static_cast<std::size_t>(count));
     }
@@ -75,7 +75,7 @@ std::vector<Vec3> view_directions(std::span<const double> views) {
 View view_from(const Vec3& direction, const Vec3& centre, double resolution) {
     View view;
     view.forward = -direction;
-    // Up is as near to z as possible; seen from above or below, to y.
+    // `up` is as near to z as possible. Seen from above or below, it is as near to y as possible.
     const Vec3 vertical = std::abs(direction.z()) < 0.999 ? Vec3::UnitZ() : Vec3::UnitY();
     view.right = vertical.cross(direction).normalized();
     view.up = direction.cross(view.right).normalized();

@@ -9,14 +9,15 @@
 
 namespace scanmill::scan {
 
-/// Unit vectors from the object to the sensor. One number n ≥ 1: the Fibonacci sphere's n points (González 2010): equal
-/// steps in height, golden-angle turns. 3 k numbers: k directions, normalised. Throws Error for anything else.
+/// Returns unit vectors from the object to the sensor. One number n ≥ 1 gives the n points of the Fibonacci sphere
+/// (González 2010), with equal steps in height and turns by the golden angle. 3 k numbers give k directions,
+/// normalised. Throws Error for anything else.
 std::vector<Vec3> view_directions(std::span<const double> views);
 
-/// Parallel rays in a regular grid. Ray (column i, row j) runs along `forward` through
-/// centre + (left + i + 1/2) resolution right + (bottom + j + 1/2) resolution up; depths count from there.
+/// Parallel rays in a regular grid. Ray (column i, row j) runs along `forward` through centre + (left + i + 1/2)
+/// resolution right + (bottom + j + 1/2) resolution up. Depths count from that point.
 struct View {
-    Vec3 right, up, forward;  // orthonormal, right × up = −forward: towards the sensor
+    Vec3 right, up, forward;  // orthonormal; right × up = −forward points to the sensor
     Vec3 centre;
     double resolution = 0;
     double left = 0, bottom = 0;  // whole numbers
@@ -34,11 +35,11 @@ struct View {
     }
 };
 
-/// The frame of the direction, without rays yet: `width` and `height` are 0.
+/// The view from a direction, without rays yet: `width` and `height` are 0.
 View view_from(const Vec3& direction, const Vec3& centre, double resolution);
 /// Number of rays that cover the projections of the points.
 double rays_over(const View& view, std::span<const Vec3> points);
-/// The view with just those rays. Pre: rays_over() is small enough to hold.
+/// The view with just the rays of rays_over(). Pre: rays_over() is small enough to hold.
 View covering(View view, std::span<const Vec3> points);
 
 }  // namespace scanmill::scan

@@ -48,7 +48,7 @@ void require_sound(const VirtualScanParams& params, double resolution, double no
     const double outliers = params.outliers.value(), overlap = params.overlap.value();
     if (!(outliers >= 0 && outliers <= 10))
         throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text())
-            .hint("it is a share of the points: 1 % adds one to a hundred");
+            .hint("it is a share of the points: 1 % adds one outlier to a hundred points");
     if (!(overlap >= 0 && overlap <= 1))
         throw Error("overlap is {}; it must be from 0 % to 100 %", params.overlap.text())
             .hint("100 % keeps the points of all views, 0 % only those of the first view");
@@ -71,7 +71,7 @@ double rays_over(std::span<const scan::View> views, const scan::Scene& scene) {
     return total;
 }
 
-/// Computed from the number of rays at a fine resolution.
+/// Names a resolution that fits. It is computed from the number of rays at a fine resolution.
 std::string resolution_that_fits(const scan::Scene& scene, const std::vector<Vec3>& directions) {
     const double fine = 1e-6 * scene.box.diagonal();
     const double total = rays_over(views_at(scene, directions, fine), scene);
@@ -105,7 +105,7 @@ struct Samples {
     }
 };
 
-/// The hits within `max_angle`, view by view.
+/// Returns the hits within `max_angle`, view by view.
 std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const std::vector<scan::View>& views,
                                                Angle max_angle, Context& context) {
     const double least_cosine = max_angle.in_degrees() < 90 ? elementary::turn_of(max_angle.in_radians()).cosine : 0;
@@ -119,12 +119,13 @@ std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const s
     return returns;
 }
 
-/// Removes, view by view, all but `share` of the hits near kept ones of an earlier view. Returns the number removed.
+/// Visits view by view the hits near a kept hit of an earlier view, and removes all but `share` of them. Returns the
+/// number of removed hits.
 std::size_t thin_overlap(std::vector<std::vector<scan::Hit>>& returns, const BoundingBox& box, double radius,
                          double share, const Random& random) {
     std::size_t dropped = 0;
     CellGrid grid(box, radius);
-    std::vector<std::vector<Vec3>> seen;  // by cell
+    std::vector<std::vector<Vec3>> seen;  // positions of kept hits, by cell
     for (std::size_t view = 0; view < returns.size(); ++view) {
         Random draw = random.stream(view);
         dropped += std::erase_if(returns[view], [&](const scan::Hit& hit) {

@@ -107,7 +107,7 @@ TEST(VirtualScanRefusals, InvalidViews) {
     for (const std::vector<double>& views :
          {std::vector<double>{0}, {2.5}, {-3}, {1e9}, {std::numeric_limits<double>::quiet_NaN()}}) {
         params.views = views;
-        EXPECT_THAT(refusal(params), HasSubstr("one number must be a whole one"));
+        EXPECT_THAT(refusal(params), HasSubstr("a single number must be a whole number"));
     }
     params.views = {1, 2};
     EXPECT_THAT(refusal(params), HasSubstr("views has 2 numbers"));
@@ -125,7 +125,7 @@ TEST(VirtualScanRefusals, SizesThatFitNoShape) {
     EXPECT_THAT(refusal(params), HasSubstr("the radius of the sphere is -1 u"));
     params.shape = Shape::torus;
     params.size = {1.0, 1.0};
-    EXPECT_THAT(refusal(params), HasSubstr("does not leave a hole"));
+    EXPECT_THAT(refusal(params), HasSubstr("leaves no hole"));
 }
 
 TEST(VirtualScanRefusals, SizesBeyondTheSupportedRange) {
