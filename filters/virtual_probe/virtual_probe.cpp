@@ -97,7 +97,7 @@ std::vector<u32> made_touches(const ProbePlan& plan) {
 }
 
 void require_directions(const ProbePlan& plan, std::span<const u32> rows) {
-    constexpr double most = 1e-4;  // as in files
+    constexpr double most = 1e-4;  // allows for the rounding of numbers in files
     for (const u32 row : rows) {
         const ProbeTouch& touch = plan.touches[row];
         if (!touch.position.allFinite() || !touch.start.allFinite())
