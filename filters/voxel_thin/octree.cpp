@@ -34,7 +34,7 @@ u64 code_of(const Vec3& p, const Vec3& origin, double finest) {
     return code;
 }
 
-/// The low corner of the code's cell at this level, counted in cells of this level.
+/// Returns the low corner of the code's cell at this level, counted in cells of this level.
 Vec3 cell_of(u64 code, int level) {
     Vec3 cell = Vec3::Zero();
     for (int i = 0; i < level; ++i)
@@ -87,7 +87,7 @@ private:
             return positions_[point.row] != positions_[points.front().row];
         };
         if (level < most_levels || edge <= least || std::ranges::none_of(points, differs)) return;
-        throw Error("the octree's smallest leaves have edges of {:.3g} u, 1/{} of its root, and a point needs {:.3g} u",
+        throw Error("the octree's smallest leaves have edges of {:.3g} u, 1/{} of its root, but a point needs {:.3g} u",
                     edge, u64(1) << most_levels, least)
             .hint("remove points far away from the object, or give a larger tolerance");
     }
@@ -124,9 +124,10 @@ struct Root {
     int levels;  ///< between the root and the basic voxels
 };
 
-/// The smallest cell that holds the box, of the grids from `origin` with edges `base` times a power of two. It need not
-/// contain `origin`, so a distant origin costs no levels. If the box begins below the origin (stray points do), the
-/// origin moves down by an edge that no smaller cell notices.
+/// Returns the smallest cell that holds the box. The cells are those of grids from `origin` with edges `base` times a
+/// power of two. The cell need not contain `origin`, so a distant origin costs no levels. If the box begins below the
+/// origin, because of stray points, the origin moves down by an edge. This edge is a multiple of all smaller ones, so
+/// smaller cells stay the same.
 Root root_over(const BoundingBox& box, Vec3 origin, double base) {
     if ((box.low.array() < origin.array()).any()) {
         double edge = base;
@@ -140,9 +141,11 @@ Root root_over(const BoundingBox& box, Vec3 origin, double base) {
     }
 }
 
-/// Removes points of basic voxels with fewer than `min_points`. Counts them and the voxels. Pre: sorted by code.
+/// Removes the points of basic voxels with fewer than `min_points` points. Counts these points and all basic voxels.
+/// Pre: sorted by code.
 void remove_noise(Array<Located>& points, int levels, u32 min_points, KeptRows& rows) {
-    // A root more than 21 levels above the basic voxels has deepest cells larger than these: then those count.
+    // If the root is more than 21 levels above the basic voxels, the deepest cells are larger than these, and count
+    // instead.
     const int shift = 3 * (most_levels - std::min(levels, most_levels));
     std::size_t kept = 0;
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {

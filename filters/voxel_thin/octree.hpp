@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Thinning with an octree instead of a grid: leaves as large as all of their points allow.
+/// Thins with an octree instead of a grid. Its leaves are as large as all of their points allow.
 
 #include <span>
 
@@ -9,20 +9,20 @@
 namespace scanmill::voxel {
 
 struct OctreeChoice {
-    /// With members and edges of the leaves. `voxels` counts the occupied basic voxels, `noise` the points in those of
-    /// them that hold fewer than min_points.
+    /// The kept rows, with members and edges of the leaves. `voxels` counts the occupied basic voxels. `noise` counts
+    /// the points in basic voxels with fewer than min_points.
     KeptRows rows;
-    /// Edges of leaves with more than one point, or `base` when there are none.
+    /// Smallest and largest edge of leaves with more than one point, or `base` if there are none.
     double smallest = 0, largest = 0;
 };
 
-/// Basic voxels are the cells of edge `base` of the grid from `origin`; the octree joins eight into one, and divides
-/// one into eight. Noise is decided in basic voxels, as in a grid of that edge: points of those with fewer than
-/// `min_points` are removed first. So a leaf may hold a single point whatever `min_points` is.
+/// Basic voxels are the cells of edge `base` of the grid from `origin`. The octree joins eight of them into one, and
+/// divides one into eight. Noise is decided in basic voxels, as in a grid of that edge: points of basic voxels with
+/// fewer than `min_points` points are removed first. So a leaf may hold a single point whatever `min_points` is.
 ///
 /// The root is the smallest cell that holds all points. A cell is divided while it holds more than one point and its
-/// edge is above the smallest of its points' sizes, at most 21 times; throws Error when that is not enough. In a leaf
-/// the point nearest the centre is kept, ties: the lowest row.
+/// edge is above the smallest of its points' sizes, at most 21 times. Throws Error if that is not enough. In a leaf,
+/// the point nearest the centre is kept; ties: the lowest row.
 ///
 /// Pre: sizes[size_of_row[row]] is the size that a row allows, above 0.
 /// Cost: a sort, and the depth of the tree in passes over the points; 16 bytes per point.

@@ -9,15 +9,14 @@ SCANMILL_FILTER() {
     return Declare<P>("voxel-thin", 5)
         .summary("Keeps, in every voxel, the point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
-        .ties("Of points equally near a centre the first is kept; a duplicate counts as a point.")
-        .not_finite("Refused, with their number and the first of them.")
+        .ties("Among points equally near a centre, the first is kept; a duplicate counts as a point.")
+        .not_finite("Refused; the message gives their number and the first one.")
         .adds({"bin-size", "local-bin-size", "curvature-1", "curvature-2", "fit-error", "stands-for"})
         .in<PointCloud>("points", "Finite coordinates; every column is carried along.")
-        .out<PointCloud>(
-            "points",
-            "The kept points, in input order, each with the edge of its voxel in the column `bin-size`; when that is "
-            "derived also `curvature-1`, `curvature-2`, `fit-error`, `local-bin-size` and `stands-for`, the "
-            "number of points in the voxel.")
+        .out<PointCloud>("points",
+                         "The kept points, in input order. The column `bin-size` holds the edge of each point's voxel. "
+                         "If the voxel size is derived, there are also `curvature-1`, `curvature-2`, `fit-error`, "
+                         "`local-bin-size` and `stands-for` (the number of points in the voxel).")
         .param("bin-size", &P::bin_size, "Edge of a voxel; auto derives it from the tolerance.", word("auto"), above(0))
         .param("tolerance", &P::tolerance,
                "Largest distance between the scanned surface and a triangulation of the kept points. This and the "
@@ -28,39 +27,39 @@ SCANMILL_FILTER() {
                  {"quantile", P::Rule::quantile, "The size that all points but a small share allow."},
                  {"adaptive", P::Rule::adaptive,
                   "An octree whose leaves are as large as their points allow: fewer points in flat regions."}},
-                "How the voxel size follows from the sizes that the points allow.")
-        .param("quantile", &P::quantile, "The share of the points whose smaller sizes are ignored.", at_least(0),
-               at_most(1))
+                "Rule by which the voxel size follows from the sizes that the points allow.")
+        .param("quantile", &P::quantile, "Share of the points, those with the smallest sizes, whose sizes are ignored.",
+               at_least(0), at_most(1))
         .param("neighbours", &P::neighbours,
                "Number of nearest points that determine the curvature at a point, itself not counted.", at_least(6),
                at_most(1000))
         .choice("origin", &P::origin,
                 {{"nearest", LocalSurfaceParams::Origin::nearest, "The point itself."},
                  {"centroid", LocalSurfaceParams::Origin::centroid,
-                  "The one nearest the centroid of it and its neighbours: better at a scan's boundary."}},
+                  "The point nearest the centroid of the point and its neighbours: better at a scan's boundary."}},
                 "The point that the fitted quadric passes through.")
         .choice("derivatives", &P::derivatives,
                 {{"exact", P::Derivatives::exact, "The derivatives of the quadric."},
                  {"thesis", P::Derivatives::thesis,
                   "The coefficients of the quadric, as in Wang: voxels up to 1.4 times as large."}},
-                "What is used as second derivatives of the surface.")
+                "Values that are used as second derivatives of the surface.")
         .choice("guarantee", &P::guarantee,
-                {{"centres", P::Guarantee::centres, "Between centres of adjacent voxels: voxels twice as large."},
+                {{"centres", P::Guarantee::centres, "Between centres of adjacent voxels: voxels are twice as large."},
                  {"points", P::Guarantee::points, "Between any two points in adjacent voxels."}},
-                "Which distances the edge length that the tolerance allows must bound.")
+                "Distances that must be at most the edge length that the tolerance allows.")
         .param("min-points", &P::min_points,
-               "Voxels with fewer points are noise and keep none; 1 keeps all voxels. With `rule: adaptive` these are "
-               "the basic voxels of edge `bin-size`, before any is divided or joined.",
+               "Voxels with fewer points are noise and keep none; 1 keeps all voxels. With `rule: adaptive`, the "
+               "points in basic voxels of edge `bin-size` are counted, before any voxel is divided or joined.",
                at_least(1))
         .param("margin", &P::margin,
                "The grid begins this far below the bounding box of the points that are not stray, along every axis.",
                at_least(0))
-        .metric("bin-size", Unit::length, "Edge of a voxel, given or derived; in an octree of a basic voxel.")
+        .metric("bin-size", Unit::length, "Edge of a voxel, given or derived; in an octree, edge of a basic voxel.")
         .metric("kept", Unit::count, "Points kept.", headline)
         .metric("removed", Unit::count, "Points that are not kept.")
         .metric("noise", Unit::count,
-                "Removed points whose voxels (in an octree basic voxels) had fewer than min-points.")
-        .metric("smallest-radius", Unit::length, "Smallest radius of principal curvature; none on a plane.")
+                "Removed points whose voxels (in an octree, basic voxels) had fewer than min-points.")
+        .metric("smallest-radius", Unit::length, "Smallest radius of principal curvature; not reported for a plane.")
         .metric("flat", Unit::count,
                 "Points so flat that a tenth of the bounding box (without stray points) limits their voxels.")
         .metric("undetermined", Unit::count, "Points whose neighbours lie near a line and determine no curvature.")

@@ -20,7 +20,7 @@ constexpr double farthest_voxel = 0x1p31;
 constexpr double most_voxels = 0x1p63;
 constexpr u32 invalid_row = ~u32(0);
 
-/// Multiply and fold: both halves of the result depend on all bits of the voxel's number.
+/// Hashes by multiplying and folding: both halves of the result depend on all bits of the voxel's number.
 u64 hash_of(u64 voxel) {
     const u64 product = voxel * 0x9e3779b97f4a7c15u;
     return product ^ (product >> 32);
@@ -120,7 +120,8 @@ Candidate<Number> located(const Vec3& point, u32 row, const VoxelGrid& grid) {
     double distance = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double quotient = (point[axis] - grid.origin[axis]) / grid.size;
-        // Truncates and corrects negative numbers: floor without SSE4's instruction. grid_over() limits the range.
+        // This is floor() without SSE4's instruction: it truncates and corrects negative numbers. grid_over() limits
+        // the range.
         const double whole = static_cast<double>(static_cast<std::int32_t>(quotient));
         const double voxel = whole > quotient ? whole - 1 : whole;
         const double offset = point[axis] - (grid.origin[axis] + (voxel + 0.5) * grid.size);

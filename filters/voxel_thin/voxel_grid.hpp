@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A grid of voxels over a cloud, and in each occupied voxel the point nearest the centre: the main loop of thinning,
-/// for points in memory and for points that are read in chunks.
+/// A grid of voxels over a cloud. In each occupied voxel, the point nearest the centre is found. This is the main loop
+/// of thinning, for points in memory and for points that are read in chunks.
 
 #include <array>
 #include <functional>
@@ -14,7 +14,8 @@
 
 namespace scanmill::voxel {
 
-/// Voxel (i, j, k) holds floor((p - origin) / size); its number is (i, j, k) - first, counted row by row.
+/// Voxel (i, j, k) holds the points p with (i, j, k) = floor((p - origin) / size). Its number counts (i, j, k) - first
+/// row by row.
 struct VoxelGrid {
     Vec3 origin;
     double size;
@@ -24,38 +25,40 @@ struct VoxelGrid {
     u64 size_in_voxels() const { return voxels[0] * voxels[1] * voxels[2]; }
 };
 
-/// The part of the grid that overlaps the box of all points. Pre: the box is finite, size above 0. Throws Error for
-/// more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), for an origin more than
-/// 2^31 voxels away, and for stray points that far away or that need more than 2^63 voxels in all.
+/// Returns the part of the grid that overlaps the box of all points. Pre: the box is finite, size above 0. Throws Error
+/// for more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), for an origin more
+/// than 2^31 voxels away, and for stray points that far away or that need more than 2^63 voxels in all.
 VoxelGrid grid_over(const RobustBox& box, const Vec3& origin, double size);
 
 /// Points in order, in chunks that can be read one by one.
 struct PointChunks {
     /// First row of every chunk, and the number of points as last element.
     std::vector<std::size_t> begin;
-    /// The points of a chunk. May fill and return `buffer` where they are not in memory. Called from several threads,
-    /// each with its own buffer.
+    /// Returns the points of a chunk. May fill and return `buffer` if they are not in memory. Called from several
+    /// threads, each with its own buffer.
     std::function<std::span<const Vec3>(std::size_t chunk, Array<Vec3>& buffer)> read;
 
     std::size_t size() const { return begin.back(); }
 };
 
 struct KeptRows {
-    /// Ascending.
+    /// Rows of the kept points, ascending.
     Array<u32> kept;
-    /// Per kept row the number of points in its voxel; empty unless asked for.
+    /// Per kept row the number of points in its voxel; empty if they are not counted.
     Array<u32> members;
-    /// Per kept row the edge of its voxel; empty where all are the grid's.
+    /// Per kept row the edge of its voxel; empty if all are the grid's edge.
     Array<double> edges;
     std::size_t noise = 0;  ///< points in voxels with fewer than min_points
-    std::size_t voxels = 0;  ///< occupied
+    std::size_t voxels = 0;  ///< number of occupied voxels
 };
 
-/// Pre: at least one point, all in the grid's box; fewer than 2^32.
-/// Post: of equally near points the first; the same for any division into chunks and any number of threads.
+/// Finds the point nearest the centre of each occupied voxel.
+/// Pre:  at least one point, all in the grid's box; fewer than 2^32.
+/// Post: among equally near points, the first is kept. The result is the same for any division into chunks and any
+///       number of threads.
 /// Cost: O(n) time; 24 to 72 bytes per occupied voxel, an eighth of a byte per point (4 bytes more to count members),
-/// 32 bytes (48 where the grid has 2^32 voxels or more) per point of 16 chunks, and 24 more when they are read into
-/// buffers.
+///       and 32 bytes (48 if the grid has 2^32 voxels or more) per point of 16 chunks. Points that are read into
+///       buffers take 24 bytes more per point of 16 chunks.
 KeptRows nearest_to_centres(const PointChunks& points, const VoxelGrid& grid, u32 min_points, Context& context,
                             bool count_members = false);
 

@@ -23,7 +23,7 @@ namespace {
 
 using namespace voxel;
 
-/// Throws Error for everything that is refused whatever the coordinates are.
+/// Throws Error for everything that is refused without regard to the coordinates.
 void require_valid(std::size_t points, const VoxelThinParams& params) {
     require_points(points, "thinning needs at least 1");
     if (params.bin_size) {
@@ -39,8 +39,8 @@ void require_valid(std::size_t points, const VoxelThinParams& params) {
     if (params.grid_origin && !params.grid_origin->allFinite()) throw Error("the grid's origin is not finite");
 }
 
-/// The box of all points in one parallel pass, and without stray points. Throws Error for coordinates that are not
-/// finite.
+/// Returns the box of all points, found in one parallel pass, and the box without stray points. Throws Error for
+/// coordinates that are not finite.
 RobustBox required_bounds(std::span<const Vec3> positions, Context& context) {
     constexpr std::size_t chunk = 1 << 18;
     std::vector<FiniteBounds> parts((positions.size() + chunk - 1) / chunk);
@@ -50,11 +50,11 @@ RobustBox required_bounds(std::span<const Vec3> positions, Context& context) {
     });
     FiniteBounds all;
     for (const FiniteBounds& part : parts) all.add(part);
-    if (!all.finite) require_finite(positions);  // counts them for the message
+    if (!all.finite) require_finite(positions);  // counts the coordinates that are not finite
     return robust_box(positions, all.box);
 }
 
-/// Points of a chunk: they fit the cache of one core.
+/// Number of points in a chunk. A chunk fits the cache of one core.
 constexpr std::size_t chunk_size = std::size_t(1) << 16;
 
 PointChunks chunks_of(std::span<const Vec3> positions) {
@@ -87,9 +87,9 @@ bool are_sizes(const Column& column, std::size_t rows) {
     return true;
 }
 
-/// Adds `bin-size` (float64): per kept point the edge of its voxel. `edges` has one per point, or is empty where all
-/// are `grid_edge`. Where the scan has such a column of one finite number above 0 per point, its larger values stay,
-/// with a warning: points that were thinned before keep the spacing of the larger voxels.
+/// Adds `bin-size` (float64): per kept point the edge of its voxel. `edges` has one edge per point, or is empty if all
+/// are `grid_edge`. If the scan has a column `bin-size` of one finite number above 0 per point, its larger values stay,
+/// with a warning. Points that were thinned before thus keep the spacing of the larger voxels.
 void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double grid_edge, Context& context) {
     Array<double> sizes(thinned.size());
     if (edges.empty())
@@ -112,8 +112,8 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
 }
 
 /// Adds `curvature-1`, `curvature-2`, `fit-error`, `local-bin-size` (float64) and `stands-for` (uint32). Columns of
-/// these names that the scan had are replaced, with a warning. `kept` are the points' rows in the input, `members` the
-/// number of points in the voxel of each.
+/// these names that the scan had are replaced, with a warning. `kept` are the points' rows in the input. `members` are
+/// the numbers of points in their voxels.
 void add_surface_columns(PointCloud& thinned, const LocalSizes& local, std::span<const u32> kept,
                          std::span<const u32> members, Context& context) {
     Array<double> first(kept.size()), second(kept.size()), error(kept.size()), size(kept.size());
@@ -136,7 +136,7 @@ void add_surface_columns(PointCloud& thinned, const LocalSizes& local, std::span
         add_column(thinned.columns, std::move(column), context);
 }
 
-/// Doubts voxels that are about as large as the scan.
+/// Doubts the result if voxels are about as large as the scan.
 void doubt_few(const VoxelThinResult& result, std::size_t points, Context& context) {
     constexpr std::size_t few = 100, many = 10'000;
     if (result.kept.size() < few && points >= many)
@@ -154,7 +154,7 @@ public:
           step_(points.size() / most + 1),
           taken_((points.size() + step_ - 1) / step_) {}
 
-    /// The same points. Valid as long as this sample.
+    /// Returns the same points in chunks. Reading them fills the sample. Valid as long as this sample.
     PointChunks chunks() {
         return {points_.begin, [this](std::size_t chunk, Array<Vec3>& buffer) {
                     const std::span<const Vec3> positions = points_.read(chunk, buffer);
@@ -174,7 +174,8 @@ private:
     Array<Vec3> taken_;
 };
 
-/// Doubts voxels that hold far more points than the others: parts that are small beside the scan.
+/// Doubts the result if some voxels hold far more points than the others: parts of the scan are then too small for
+/// them.
 void doubt_crowded(const VoxelGrid& grid, std::span<const Vec3> sample, std::size_t kept, LengthUnit unit,
                    Context& context) {
     constexpr double crowded = 100, least = 0.01, doubtful = 0.1;
@@ -197,10 +198,11 @@ void doubt_crowded(const VoxelGrid& grid, std::span<const Vec3> sample, std::siz
         begin = end;
     }
     if (const double share = static_cast<double>(points) / all; share > doubtful)
-        context.doubt(fmt::format(
-            "{:.0f} % of the points are in {} of {:.4g} {}, and one of each stays: a part of the scan is tiny beside "
-            "the rest; use smaller voxels, and if one view is in metres and another in millimetres, convert it first",
-            100 * share, count_text(count, "voxel", "voxels"), grid.size, symbol(unit)));
+        context.doubt(
+            fmt::format("{:.0f} % of the points are in {} of {:.4g} {}, and only one point of each stays: a part of "
+                        "the scan is tiny beside the rest; use smaller voxels, and if one view is in metres and "
+                        "another in millimetres, convert one first",
+                        100 * share, count_text(count, "voxel", "voxels"), grid.size, symbol(unit)));
 }
 
 /// Moves the rows into the result, adds the column `bin-size` and reports the metrics of every thinning.
