@@ -96,7 +96,7 @@ TEST(RegionGrow_ThinLoops, AreReportedAndOthersAreNot) {
     };
     EXPECT_THAT(warnings(plate(2.9)), testing::Contains(testing::HasSubstr(
                                           "boundary loops lie where two sides or layers are less than 3 voxels "
-                                          "apart, the nearest 2.9 u with voxels of 1 u")));
+                                          "apart; the nearest are 2.9 u apart, with voxels of 1 u")));
     EXPECT_THAT(warnings(plate(5)), testing::Not(testing::Contains(testing::HasSubstr("two sides"))));
     RegionGrowParams given;
     given.search_radius = Length(2 * std::numbers::sqrt3);

@@ -137,8 +137,9 @@ TEST(Smooth, Columns_AreCarried) {
     cloud.columns.add(Column("moved", 1, Buffer<float>(Array<float>(200, 7.f))));
     cloud.columns.add(Column("normal", 3, Buffer<float>(Array<float>(600, 1.f))));
     const Smoothed result = smoothed(cloud);
-    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("the column 'moved' of the input is replaced"),
-                                             HasSubstr("the column 'normal' is that of the points before they moved")));
+    EXPECT_THAT(result.warnings,
+                ElementsAre(HasSubstr("the column 'moved' of the input is replaced"),
+                            HasSubstr("the column 'normal' holds the normals from before the points moved")));
     EXPECT_LT(result.points.columns.find("moved")->number(0), 1);
     EXPECT_EQ(*result.points.columns.find("normal"), *cloud.columns.find("normal"));
     EXPECT_EQ(result.points.frame, cloud.frame);
