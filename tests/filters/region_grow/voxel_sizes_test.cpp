@@ -178,9 +178,9 @@ TEST(RegionGrow_BinSizesThatContradictTheDensity, AreIgnored) {
         return done.warnings;
     };
     // As of a scan in another unit.
-    EXPECT_THAT(expect_plain(1), ElementsAre(AllOf(HasSubstr("are too dense for their column `bin-size`"),
-                                                   ContainsRegex("voxels of 0.1[0-9]* u leave them, not 1;"),
-                                                   HasSubstr("drop the column"))));
+    EXPECT_THAT(expect_plain(1),
+                ElementsAre(AllOf(HasSubstr("are too dense for their column `bin-size`"),
+                                  ContainsRegex("voxels of 0.1[0-9]* u, not 1;"), HasSubstr("drop the column"))));
     // The scan was sparser than its voxels, or thinned differently afterwards: no warning.
     EXPECT_THAT(expect_plain(0.01), IsEmpty());
     const double inf = std::numeric_limits<double>::infinity();
