@@ -85,7 +85,7 @@ struct Side {
     std::vector<Vec2> border;
 };
 
-/// Why a side was not found: too few of its `strips` strips, only `found`, have their border point on a line.
+/// Reason why a side was not found: only `found` of its `strips` strips have their border point on a line.
 struct NotASide {
     std::size_t found, strips;
 };

@@ -172,7 +172,7 @@ Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     return {filled.filled, filled.failed};
 }
 
-/// How densely the points support each vertex. All members but `spread` and `usual` have one value per vertex.
+/// Support of the vertices by the points. All members but `spread` and `usual` have one value per vertex.
 struct Support {
     Array<double> nearest, last;  ///< distances to the nearest and to the 8th nearest position
     std::vector<u8> far, against;  ///< flags, as poisson.hpp defines them

@@ -61,11 +61,11 @@ struct PoissonResult {
 /// from that position to its 8th nearest other one. The share of a triangle's vertices that are far is the share of its
 /// area that counts as invented.
 ///
-/// Missed. A position is missed if its distance to the surface before trimming is more than twice the smallest cell and
+/// Missed. A position is missed if it is far from the surface before trimming: by more than two smallest cells, and by
 /// more than twice the distance to its 8th nearest other position. At most 10,000 positions, spread evenly, are tested.
 ///
-/// Against. A vertex of the surface before trimming is against its points if its normal has a negative dot product with
-/// the sum of the normals at the 8 nearest positions.
+/// Against. The normals at the 8 positions nearest to a vertex are summed. The vertex is against its points if its own
+/// normal has a negative dot product with this sum. Vertices are those before trimming.
 ///
 /// Pre:  the column `normal`, 3 numbers, of any length above 0, that points outwards; finite coordinates; at least 4
 ///       different positions with a normal, not on one line. Throws Error otherwise, for a parameter out of range, if
@@ -74,10 +74,9 @@ struct PoissonResult {
 ///       `max_distance`, the surface is closed, unless it leaves the octree's cube, which is centred on the points'
 ///       box. The surface of an open sheet leaves the cube. A surface with a gap near a face of the cube may leave it,
 ///       too.
-/// Doubts its result if more than 5 % of its area is invented, if more than 5 % of the points are missed, or if more
-/// than 5 % of the vertices are against their points. Warns of points without a normal, of a surface that leaves the
-/// cube, of cracks that stay open, of a closed surface that is inside out, and of columns of the points other than
-/// `normal`, which are dropped.
+/// Doubts its result if more than 5 % of its area is invented, of the points are missed, or of the vertices are against
+/// their points. Warns of points without a normal, of a surface that leaves the cube, of cracks that stay open, and of
+/// a closed surface that is inside out. Columns of the points other than `normal` are dropped, with a warning.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. The bytes depend
 /// on the order of the points. PCL cannot be cancelled: a cancelled call returns only after PCL's part. PCL prints

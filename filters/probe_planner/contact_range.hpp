@@ -7,7 +7,7 @@
 /// is the angle of the material. A ball of radius r moves along a line through T: its centre is at T + s u for falling
 /// s, with u = (-sin phi, cos phi). T is a reference position near Q, the edge as a scan has it.
 ///
-/// Let d = T.x cos phi + T.y sin phi be the distance at which the line passes Q, and beta = asin(d / r) the angle
+/// Let d = T.x cos phi + T.y sin phi be the distance at which the line passes Q. Let beta = asin(d / r) be the angle
 /// between the approach and the normal of the contact. The ball meets the edge first if and only if |phi - beta| <=
 /// pi/2 - alpha/2. For the left face alone, the condition is d + r cos(phi + alpha/2) >= 0.
 ///

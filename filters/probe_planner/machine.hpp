@@ -2,10 +2,10 @@
 #pragma once
 /// Simulates the probe beside the part: which moves are free, and what the ball meets first.
 ///
-/// The ball's centre moves along segments. The stylus is a capsule from c + r a to c + L a, where c is the ball's
-/// centre and a the machine's axis. A clearance move is free if the ball's centre keeps r + clearance, and the stylus'
-/// axis r_s + clearance, from the mesh. An approach is free if the stylus' axis keeps r_s from all facets, and the
-/// ball's centre keeps r from the facets that do not reach into a ball around the touch.
+/// The ball's centre c moves along segments. The stylus is a capsule from c + r a to c + L a, where a is the machine's
+/// axis. A clearance move is free if c keeps the distance r + clearance from the mesh, and the stylus' axis r_s +
+/// clearance. An approach is free if the stylus' axis keeps r_s from all facets, and c keeps r from most facets. Facets
+/// that reach into a ball around the touch are exempt.
 
 #include "scanmill/data/probes.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"

@@ -12,7 +12,7 @@ SCANMILL_FILTER() {
             "simulation.")
         .source("Wang 2006, chapter 5; both faces in closed form, collisions and order are our own")
         .ties(
-            "Of phi and -phi, the one towards the left face is tried first. Among equally near lines or touches, the "
+            "The angle towards the left face is tried before its opposite. Among equally near lines or touches, the "
             "one with the lower row counts.")
         .not_finite("Refused; the message names the line and segment, or the vertex of the mesh.")
         .in<FeatureGraph>("features",

@@ -54,11 +54,11 @@ struct ReferencePoints {
 /// lengths. An open line gets max(1, round(length / spacing)) points; the outer ones are half a spacing from its ends.
 ///
 /// Two patches of region-grow end in two boundary lines along one edge. At least one of these lines has the normals of
-/// both patches. Two segments match if they run in opposite directions (to within 45 degrees), their middles are within
-/// two median segment lengths, and the left normal of each is within 30 degrees of the other's right normal, if it has
-/// one. The nearest such segment matches; ties: the lower row. Two runs of segments are paired if they match along half
-/// of the shorter run. The run of the earlier line then gets points on the intersection of the planes of both faces.
-/// The matching part of the other run gets none.
+/// both patches. Two segments match if three conditions are met. They run in opposite directions (to within 45
+/// degrees). Their middles are within two median segment lengths. The left normal of each is within 30 degrees of the
+/// other's right normal, if there is one. The nearest such segment matches; ties: the lower row. Two runs of segments
+/// are paired if they match along half of the shorter run. The run of the earlier line then gets points on the
+/// intersection of the planes of both faces. The matching part of the other run gets none.
 ///
 /// The mesh near a point may show other faces than the line does. The point then gets its faces, tangent and position
 /// from the mesh: see edge_fit.hpp. The search radius is `error` plus twice the larger of the segment length and the

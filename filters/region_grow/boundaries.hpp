@@ -17,11 +17,11 @@ struct ThinParts {
     double least = 0, voxel = 0;
 };
 
-/// Finds loops at thin parts. The opposite sheet of a boundary point is the nearest surface point that lies across the
-/// surface, rather than beside the point, and whose normal differs by more than 120 degrees. Beyond a sharp fold, it
-/// may be near along the surface, too. The relative orientation of two components is not known, so between components
-/// equal normals count as well. The voxel size follows from the search radius; ties: the smaller one. If given normals
-/// have signs that count, no loop is counted.
+/// Finds loops at thin parts. The opposite sheet of a boundary point is the nearest surface point that meets two
+/// conditions. Its normal differs by more than 120 degrees, and it lies across the surface rather than beside the
+/// point. Beyond a sharp fold, it may be near along the surface, too. The relative orientation of two components is not
+/// known, so between components equal normals count as well. The voxel size follows from the search radius; ties: the
+/// smaller one. If given normals have signs that count, no loop is counted.
 ///
 /// Pre: every vertex has one fan; search radii follow from voxel sizes. Cost: a radius search per boundary point.
 ThinParts find_thin_parts(const Surface& surface, const Components& components, const Context& context);

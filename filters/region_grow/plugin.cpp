@@ -45,7 +45,7 @@ SCANMILL_FILTER() {
         .choice("score", &P::score,
                 {{"circumradius", P::Score::circumradius, "The point whose circle with the edge is empty."},
                  {"midpoint", P::Score::midpoint, "The point nearest the edge's midpoint, as in Wang."}},
-                "Which of the suitable points an edge chooses.")
+                "Rule by which an edge chooses among its suitable points.")
         .param("start", &P::start, "Row of the point where the seed triangle starts; `auto` is the flattest point.",
                word("auto"))
         .metric("triangles", Unit::count, "Triangles of the mesh.", headline)

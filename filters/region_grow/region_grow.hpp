@@ -105,19 +105,20 @@ struct RegionGrowResult {
 /// or not above 0 count as unknown. Of rows at one position, the smallest bin-size is used, and the first normal by x,
 /// y, z.
 ///
-/// Throws Error with numbers and a way out: fewer than three distinct points, all points on one line, a NaN or infinite
-/// coordinate, a normal column of another size, a parameter out of range, a start that is not a row or starts nothing,
-/// and a search radius too small for any triangle (or layers so close that no triangle is flat).
-///
+/// Throws Error, with numbers and a way out, for
+/// - fewer than three distinct points, or all points on one line;
+/// - a NaN or infinite coordinate, or a normal column of another size;
+/// - a parameter out of range, or a start that is not a row or starts nothing;
+/// - a search radius too small for any triangle, or layers so close that no triangle is flat.
 /// Post: an oriented manifold. Every edge is in one triangle, or in two with opposite half-edges. The triangles of
 ///       every vertex form one fan. No two vertices are at one position. Triangles around a vertex do not overlap,
 ///       projected along its normal. Triangles of pass 4 are an exception, with dihedral deviations of up to 172
 ///       degrees. No triangle that was tested in space (above), nor one that closes a hole, intersects triangles near
 ///       it. Triangles of pass 0 keep the limits on angles; later passes relax these. Components that enclose a volume
-///       face outwards, as do open ones that bulge; flat ones face up. With normals whose signs are mixed or few, a
-///       component faces as three quarters of them do, if so many agree. Ties: among equal scores (to 1e-9), the first
-///       point along a space-filling curve is used. So the mesh depends neither on the order of the points, up to
-///       numbering, nor on the number of threads.
+///       face outwards, as do open ones that bulge; flat ones face up. If the signs of given normals are mixed or
+///       missing, three quarters of a component's normals decide which way it faces. Ties: among equal scores (to
+///       1e-9), the first point along a space-filling curve is used. So the mesh depends neither on the order of the
+///       points, up to numbering, nor on the number of threads.
 ///
 /// Cost: O(n log n) time where the nearest 16 points decide; about 450 bytes per point beside the result. Other edges,
 ///       and edges without a suitable point, consider the open points within their search radius. If one of these could
@@ -125,11 +126,11 @@ struct RegionGrowResult {
 ///       every point that is rejected because of the boundary or other points. So a radius of many spacings costs O(n m
 ///       log m) on noisy scans; use the default there.
 ///
-/// Metrics: see plugin.cpp. Warns if more than half a percent of the points stay unused, if most points are too dense
-/// for their `bin-size`, about normals with mixed signs, and about cases that find_features() could not decide. Doubts
-/// the result if more than 2 % of the points are unused, if the triangles by themselves make more than one crease per
-/// 20 of more than 10,000 edges, if normals end the surface, or if loops lie at thin parts.
-/// 10,000 edges, normals that end the surface, loops at thin parts.
+/// Metrics: see plugin.cpp. Warns if more than half a percent of the points stay unused, or if most points are too
+/// dense for their `bin-size`. Also warns of normals with mixed signs, and of cases that find_features() could not
+/// decide. Doubts the result if more than 2 % of the points are unused, if normals end the surface, or if loops lie at
+/// thin parts. Also doubts it if the triangles by themselves make more than one crease per 20 edges, of more than
+/// 10,000 edges.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

@@ -10,9 +10,8 @@ SCANMILL_FILTER() {
         .summary("Makes an oriented manifold mesh of any triangles: stitches, orients, splits, and drops specks.")
         .source("Gueziec, Taubin, Lazarus, Horn 2001, Cutting and stitching; by CGAL")
         .ties(
-            "Of vertices at one position, of equally near ones and of equal triangles, the lower row stays. A "
-            "component "
-            "at the limit of min-component stays.")
+            "Among vertices at one position, equally near vertices or equal triangles, the lower row stays. A "
+            "component at the limit of min-component stays.")
         .not_finite("Refused; the message gives their number and the first one.")
         .in<TriangleMesh>(
             "mesh",

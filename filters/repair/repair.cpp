@@ -450,12 +450,12 @@ private:
     RepairResult result_;
     /// Positions of the input, then of copies.
     Array<Vec3> positions_;
-    /// By vertex of the input: the vertex that it is joined to.
+    /// The vertex that each vertex of the input is joined to.
     Array<u32> joined_;
-    /// By vertex: the row of the input's vertex whose values it has.
+    /// Per vertex the row of the input's vertex whose values it has.
     Array<u32> source_;
     std::vector<Triangle> triangles_;
-    /// By triangle: its row in the input.
+    /// Per triangle its row in the input.
     Array<u32> rows_;
     std::set<Edge> sharp_;
     std::map<u32, Edge> edge_rows_;

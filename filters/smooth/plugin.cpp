@@ -23,7 +23,7 @@ SCANMILL_FILTER() {
                 {{"jet", P::Method::jet, "All neighbours have the same weight."},
                  {"mls", P::Method::mls,
                   "Near neighbours have more weight (moving least squares): more details stay, but also more noise."}},
-                "How the neighbours are weighted when a polynomial of degree two is fitted to them.")
+                "Weights of the neighbours when a polynomial of degree two is fitted to them.")
         .param("neighbours", &P::neighbours,
                "Number of nearest other positions. The point itself counts in addition; its duplicates do not count.",
                at_least(5), at_most(1000), unless_given("radius"))

@@ -98,7 +98,7 @@ private:
             const double share = one / (one - two);
             // Before or after the crossing, the edge is on the surface up to rounding.
             if (std::min(std::abs(one) * share, std::abs(two) * (1 - share)) <= zero_) continue;
-            // At the crossing, the other function, which is not 0 there, may hold.
+            // The other function, which is not 0 at the crossing, may hold there instead.
             if (edge_.is_sharp && value(1 - of, share) * (edge_.combine == Combine::max ? 1 : -1) > zero_) continue;
             crossings_.push_back(share);
         }

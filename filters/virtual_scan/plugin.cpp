@@ -42,7 +42,7 @@ SCANMILL_FILTER() {
         .param("outliers", &P::outliers,
                "Number of points anywhere in the enlarged bounding box, as a share of the surface points.", at_least(0),
                at_most(10))
-        .param("overlap", &P::overlap, "Of the points that an earlier view has already seen, this share is kept.",
+        .param("overlap", &P::overlap, "Share that is kept of the points that an earlier view has already seen.",
                at_least(0), at_most(1))
         .param("max-angle", &P::max_angle, "Hits where ray and surface normal make a larger angle are dropped.",
                above(0), at_most(90))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A mesh as a scene: a z-buffer in double precision, one ray through every pixel's centre.
 ///
-/// The side of an edge on which a pixel lies is computed from the edge's ends in a fixed order, so the two triangles of
+/// The side of an edge on which a pixel lies is computed from the edge's ends in a fixed order. So the two triangles of
 /// an edge get the same number with opposite signs, and no ray passes between them. Source: Catmull 1974 for the
 /// z-buffer, Pineda 1988 for the edge functions.
 #include <Eigen/Geometry>

@@ -55,9 +55,9 @@ struct VirtualScanParams {
     /// Number of outliers, as a share of the surface points. They lie anywhere in the bounding box, enlarged by a tenth
     /// on all sides.
     Ratio outliers = Ratio::percent(0);
-    /// Of the points that an earlier view has already seen, the share that is kept. A point has been seen if a kept
-    /// point of an earlier view is nearer than `resolution`, before noise. 100 %: views are independent; 0 %: no two
-    /// views overlap.
+    /// Share that is kept of the points that an earlier view has already seen. A point has been seen if a kept point of
+    /// an earlier view is nearer than `resolution`, before noise. 100 %: views are independent; 0 %: no two views
+    /// overlap.
     Ratio overlap = Ratio::percent(100);
     /// Hits where ray and surface normal make a larger angle are dropped; above 0, at most 90 deg.
     Angle max_angle = Angle::degrees(80);

@@ -26,8 +26,10 @@ struct VoxelGrid {
 };
 
 /// Returns the part of the grid that overlaps the box of all points. Pre: the box is finite, size above 0. Throws Error
-/// for more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), for an origin more
-/// than 2^31 voxels away, and for stray points that far away or that need more than 2^63 voxels in all.
+/// for
+/// - more than 2^21 voxels along an axis of the robust box (with the smallest size that fits);
+/// - an origin or stray points more than 2^31 voxels away;
+/// - stray points that need more than 2^63 voxels in all.
 VoxelGrid grid_over(const RobustBox& box, const Vec3& origin, double size);
 
 /// Points in order, in chunks that can be read one by one.
