@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = NormalsParams;
-    return Declare<P>("normals", 3)
+    return Declare<P>("normals", 4)
         .summary("Estimates the normal at every point, and turns it to the outside.")
         .source("Hoppe, DeRose, Duchamp, McDonald, Stuetzle 1992; Cazals, Pouget 2005 for `jet`")
         .ties(
@@ -32,13 +32,15 @@ SCANMILL_FILTER() {
                at_least(2), at_most(1000))
         .choice("orient", &P::orient,
                 {{"auto", P::Orient::automatic,
-                  "As `sensor` if there is a column `approach` or a `scanner`, else as "
-                  "`tree`."},
+                  "As `sensor` if there is a column `approach` or a `scanner`; else as `column` if there is a column "
+                  "`normal` that does not contradict itself; else as `tree`."},
                  {"sensor", P::Orient::sensor,
                   "Towards the scanner; where the surface is seen edge-on, consistent with the neighbours."},
                  {"known", P::Orient::known,
                   "As `sensor` if there is a column `approach` or a `scanner`; else the points stay as they are, for "
                   "steps that can do without normals."},
+                 {"column", P::Orient::column,
+                  "On the side of the column `normal`; only the direction is estimated anew."},
                  {"tree", P::Orient::tree,
                   "Consistent with the neighbours, along a spanning tree. The tree starts at the highest point of "
                   "every component, where up is outside."},
@@ -50,6 +52,9 @@ SCANMILL_FILTER() {
             "oriented", Unit::count,
             "Points whose side is decided: all points; none with `orient: none`, and if the points stay as they are.")
         .metric("by-sensor", Unit::count, "Points that are turned towards the scanner.")
+        .metric("against", Unit::count,
+                "Points whose normals are on the other side than the scanner, or than the column `normal`.",
+                smaller_is_better)
         .metric("doubtful", Unit::count,
                 "Points whose neighbours lie on one line, or most of whose neighbours have normals on the other side.",
                 headline, smaller_is_better)
