@@ -470,7 +470,7 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
         context.doubt(fmt::format("the surface may have several sheets at {} with a wrong sign",
                                   count_text(result.sign_violations, "edge or weight", "edges or weights")));
     if (!counts.closed) return;
-    if (signed_volume(mesh.positions, mesh.triangles) < 0)
+    if (signed_volume(mesh.positions.span(), mesh.triangles.span()) < 0)
         context.doubt("the mesh is inside out: the result exchanges inside and outside");
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "threemf/threemf.hpp"
 
-#include <Eigen/Geometry>
-
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -15,18 +13,6 @@
 namespace scanmill::threemf {
 
 namespace {
-
-/// Six times the volume, relative to the first vertex.
-double six_volumes(const TriangleMesh& mesh) {
-    const Vec3 base = mesh.positions[mesh.triangles[0][0]];
-    double sum = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-        const Vec3 a = mesh.positions[triangle[0]] - base, b = mesh.positions[triangle[1]] - base,
-                   c = mesh.positions[triangle[2]] - base;
-        sum += a.dot(b.cross(c));
-    }
-    return sum;
-}
 
 /// Throws Error unless the mesh is a closed, oriented manifold with finite coordinates whose triangles face outwards.
 /// The message counts the defects.
@@ -44,7 +30,7 @@ void require_solid(const TriangleMesh& mesh) {
             count_text(found.nonmanifold_vertices, "vertex", "vertices"),
             count_text(found.degenerate_triangles, "triangle that names", "triangles that name"))
             .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
-    const double volume = six_volumes(mesh) / 6;
+    const double volume = signed_volume(mesh.positions.span(), mesh.triangles.span());
     if (volume == 0)
         throw Error("3MF holds solids only; the volume of the mesh is 0, so it has no inside")
             .hint("STL, GLB and VTP hold meshes of any shape");

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/topology.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/data/half_edges.hpp"
@@ -94,6 +96,28 @@ MeshTopology topology(const TriangleMesh& mesh) {
         result.genus =
             static_cast<long>(result.components) - (result.euler + static_cast<long>(result.boundary_loops)) / 2;
     return result;
+}
+
+double signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+    if (triangles.empty()) return 0;
+    const Vec3& apex = positions[triangles[0][0]];
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles)
+        sum += (positions[a] - apex).dot((positions[b] - apex).cross(positions[c] - apex));
+    return sum / 6;
+}
+
+bool is_inside_out(const TriangleMesh& mesh) {
+    constexpr double rounding = 1e-9;
+    const double volume = signed_volume(mesh.positions.span(), mesh.triangles.span());
+    if (!(volume < 0)) return false;
+    double parts = 0;
+    const Vec3& apex = mesh.positions[mesh.triangles[0][0]];
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 to_b = mesh.positions[b] - apex, to_c = mesh.positions[c] - apex;
+        parts += std::abs((mesh.positions[a] - apex).dot(to_b.cross(to_c)));
+    }
+    return -6 * volume > rounding * parts && topology(mesh).closed;
 }
 
 }  // namespace scanmill

@@ -6,6 +6,7 @@
 /// Cost: O(F) time where no vertex has many edges, about 60 bytes per triangle.
 
 #include <optional>
+#include <span>
 
 #include "scanmill/data/mesh.hpp"
 
@@ -33,5 +34,12 @@ struct MeshTopology {
 };
 
 MeshTopology topology(const TriangleMesh& mesh);
+
+/// The volume that a closed surface encloses, negative if it is inside out; 0 without triangles. Cost: linear.
+double signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+
+/// Whether the mesh is closed and encloses a negative volume. A volume below 1e-9 of its parts counts as 0. Cost: linear;
+/// that of topology() only if the volume is negative.
+bool is_inside_out(const TriangleMesh& mesh);
 
 }  // namespace scanmill

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Small functions of positions: order, areas and volumes, and perpendicular directions.
+/// Small functions of positions: order, areas, and perpendicular directions.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -22,15 +22,6 @@ inline bool is_lower(const Vec3& a, const Vec3& b) {
 inline Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 inline Vec3 area_vector(std::span<const Vec3> positions, const Triangle& t) {
     return area_vector(positions[t[0]], positions[t[1]], positions[t[2]]);
-}
-
-/// The volume that a closed surface encloses, negative if it is inside out. Pre: at least one triangle.
-inline double signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-    const Vec3& apex = positions[triangles[0][0]];
-    double sum = 0;
-    for (const auto& [a, b, c] : triangles)
-        sum += (positions[a] - apex).dot((positions[b] - apex).cross(positions[c] - apex));
-    return sum / 6;
 }
 
 /// A unit vector at a right angle to a unit vector.
