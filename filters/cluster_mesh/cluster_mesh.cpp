@@ -28,6 +28,7 @@
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 
 namespace scanmill {
@@ -452,6 +453,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     context.progress(0.9);
 
     growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
+    face_outwards(finished.mesh, context);
     insertion.count(result);
     unite_along_triangles(insertion.clusters(), surface);
     add_clusters(insertion.clusters(), finished, finished.mesh, context);

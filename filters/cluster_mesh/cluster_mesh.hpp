@@ -95,8 +95,9 @@ struct ClusterMeshResult {
 /// Post: an oriented manifold. Every edge is in one triangle, or in two with opposite half-edges; the triangles of
 /// every vertex form one fan. Every edge is shorter than max_edge. No two triangles intersect other than in common
 /// corners and edges. Equal values of `cluster-1` are the connected components of the graph of points at a distance
-/// below max_edge. The corners of a triangle have equal values of `cluster-2`. Closed components, and open ones that
-/// bulge, face outwards. Flat components face to the side of `up`. `mesh.sharp_edges` is empty.
+/// below max_edge. The corners of a triangle have equal values of `cluster-2`. Closed components
+/// face outwards, or inwards round a cavity. Open ones that bulge face outwards. Flat components face to the side of
+/// `up`. `mesh.sharp_edges` is empty.
 ///
 /// Ties are decided by the position along a space-filling curve. Therefore the mesh does not depend on the number of
 /// threads. The order of the rows affects only the numbering.

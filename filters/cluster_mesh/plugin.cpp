@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ClusterMeshParams;
-    return Declare<P>("cluster-mesh", 3)
+    return Declare<P>("cluster-mesh", 4)
         .summary("Inserts thinned points slice by slice into clusters and continues their mesh with each point.")
         .source("Sangveraphunsiri, Srirakulchai 2006, made robust")
         .ties(

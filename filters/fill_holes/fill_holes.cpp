@@ -16,6 +16,8 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
+#include "scanmill/geometry/mesh/sides.hpp"
 
 namespace scanmill {
 
@@ -148,8 +150,12 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     const std::size_t added_triangles = filled.triangles.size() - filled.kept,
                       added_points = filled.positions.size() - mesh.positions.size();
     result.mesh = with_columns(mesh, std::move(filled), context);
+    if (const std::size_t turned = face_outwards(result.mesh, context); turned > 0)
+        context.warn(fmt::format("{} turned: the closed surface faced inwards",
+                                 count_text(turned, "triangle was", "triangles were")));
     const double share = whole > 0 ? result.area / whole : 0;
     report_doubts(result, diagonal, too_long, share, context);
+    for (std::string& doubt : doubts_about_handles(result.mesh)) context.doubt(std::move(doubt));
 
     context.metric("filled", static_cast<double>(result.filled));
     context.metric("left", static_cast<double>(result.beyond_limits + result.failed));

@@ -81,9 +81,11 @@ struct FillHolesResult {
 /// Post: no vertex of the input is moved or removed. Triangles of the input are removed only if loops are closed
 ///       together; then the mesh is closed and does not intersect itself. Every other filled loop is closed by a disc
 ///       that intersects nothing.
-/// Doubts its result in four cases: loops are closed together; a filled loop is longer than the diagonal of the mesh's
-/// box; more than 5 % of the area is filled; a loop stays open that no limit excludes. Warns of boundary edges at equal
-/// positions.
+///       Closed components face outwards, or inwards round a cavity (see sides.hpp); a warning counts the triangles
+///       that were turned.
+/// Doubts its result in five cases: loops are closed together; a filled loop is longer than the diagonal of the mesh's
+/// box; more than 5 % of the area is filled; a loop stays open that no limit excludes; a handle passes through filled
+/// faces or is hardly the object's (see handles.hpp). Warns of boundary edges at equal positions.
 ///
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles, about 1 µs for each if there
 /// is a loop. Triangulating n vertices takes about n² time. Closing together takes O(n log n) time and about 2 kB per

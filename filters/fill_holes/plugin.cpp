@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = FillHolesParams;
-    return Declare<P>("fill-holes", 4)
+    return Declare<P>("fill-holes", 5)
         .summary("Closes the holes of a mesh with triangles that continue the surface, and marks them.")
         .source("Liepa 2003, Filling holes in meshes; Botsch, Kobbelt 2004 for fairing; by CGAL")
         .ties(

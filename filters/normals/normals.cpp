@@ -47,7 +47,8 @@ struct NormalField {
     Array<Vec3> directions;
     std::vector<u8> undetermined;
     Array<double> variation;  ///< Scatter::surface_variation
-    Array<double> areas;  ///< mean squared distance to the nearest, in proportion to the area that a position stands for
+    Array<double>
+        areas;  ///< mean squared distance to the nearest, in proportion to the area that a position stands for
 
     std::span<const u32> of(std::size_t i) const { return std::span(nearest).subspan(i * each, each); }
 };
@@ -127,9 +128,8 @@ Evidence evidence_of(const PointCloud& cloud, const PointTree& tree, const Norma
     };
     if (params.scanner) {
         const Vec3 scanner = position_of(*params.scanner, "scanner") - cloud.frame.origin;
-        return {Evidence::Source::scanner, sides_towards(tree, field, [&](std::size_t row) -> Vec3 {
-                    return scanner - cloud.positions[row];
-                })};
+        return {Evidence::Source::scanner,
+                sides_towards(tree, field, [&](std::size_t row) -> Vec3 { return scanner - cloud.positions[row]; })};
     }
     if (const Column* approach = column("approach"); approach && params.orient != Orient::column)
         return {Evidence::Source::scanner, sides_towards(tree, field, along(approach))};
@@ -194,7 +194,10 @@ struct Guessed {
 class Components {
 public:
     Components(std::span<const Vec3> positions, const NormalField& field, const Graph& graph)
-        : positions_(positions), field_(field), of_(positions.size()), sets_(graph.components()) {
+        : positions_(positions),
+          field_(field),
+          of_(positions.size()),
+          sets_(graph.components()) {
         for (u32 i = 0; i < positions.size(); ++i) {
             Component& its = of_[sets_.find(i)];
             if (its.size == 0) ++count_;
@@ -456,13 +459,15 @@ bool keeps_column(const NormalField& field, const std::vector<signed char>& side
     const char* consequence = is_kept ? "the sides of the column are kept; `orient: tree` takes those of the neighbours"
                                       : "the neighbours decide; `orient: column` keeps the sides of the column";
     if (share > doubtful_share)
-        context.doubt(fmt::format("the column 'normal' contradicts itself: at {:.0f} % of the positions, most neighbours "
-                                  "have normals on the other side; {}",
-                                  100 * share, consequence));
+        context.doubt(
+            fmt::format("the column 'normal' contradicts itself: at {:.0f} % of the positions, most neighbours "
+                        "have normals on the other side; {}",
+                        100 * share, consequence));
     else if (beside > doubtful_share)
-        context.doubt(fmt::format("the column 'normal' contradicts itself: {:.0f} % of the positions are in regions that "
-                                  "face to the other side than the largest region beside them; {}",
-                                  100 * beside, consequence));
+        context.doubt(
+            fmt::format("the column 'normal' contradicts itself: {:.0f} % of the positions are in regions that "
+                        "face to the other side than the largest region beside them; {}",
+                        100 * beside, consequence));
     return is_kept;
 }
 
@@ -521,14 +526,16 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
         spread(field, graph, sides, context);
         const Guessed guessed = components.settle(evidence, sides);
         doubt_guesses(guessed, positions.size(), context);
-        if (evidence.source == Evidence::Source::column && keeps_column(field, evidence.sides, graph, params, context)) {
+        if (evidence.source == Evidence::Source::column &&
+            keeps_column(field, evidence.sides, graph, params, context)) {
             for (u32 i = 0; i < sides.size(); ++i)
                 if (evidence.sides[i] != 0) sides[i] = evidence.sides[i];
             if (const std::size_t count = components.facing_inwards(evidence, sides); count > 0)
-                context.warn(fmt::format("the column 'normal' faces inwards at {} of {} positions: surfaces from these "
-                                         "normals are inside out, unless the scan is that of a room; drop the column while reading to "
-                                         "orient the points without it",
-                                         count, positions.size()));
+                context.warn(fmt::format(
+                    "the column 'normal' faces inwards at {} of {} positions: surfaces from these "
+                    "normals are inside out, unless the scan is that of a room; drop the column while reading to "
+                    "orient the points without it",
+                    count, positions.size()));
         }
         const std::vector<u8> beside = contradicting(field, sides, context);
         for (u32 i = 0; i < sides.size(); ++i) doubtful[i] |= beside[i];

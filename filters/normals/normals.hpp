@@ -80,11 +80,11 @@ struct NormalsResult {
 /// its own, as at sharp edges and where the tree is wrong.
 ///
 /// Throws Error for fewer than 3 distinct positions, positions on one line, a NaN or infinite coordinate, a parameter
-/// out of range, Orient::sensor without directions, Orient::column without the column `normal`, and a column that is not
-/// 3 numbers. Doubts its result if
-/// more than 5 % of the points are doubtful. Doubts a column `normal` that contradicts itself, or that has the other side
-/// in regions with more than 5 % of the positions. Also doubts it if the highest point alone decides the side of components
-/// that hold more than 5 % of the positions; the largest component does not count.
+/// out of range, Orient::sensor without directions, Orient::column without the column `normal`, and a column that is
+/// not 3 numbers. Doubts its result if more than 5 % of the points are doubtful. Doubts a column `normal` that
+/// contradicts itself, or that has the other side in regions with more than 5 % of the positions. Also doubts it if the
+/// highest point alone decides the side of components that hold more than 5 % of the positions; the largest component
+/// does not count.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; the same normals for any order of the
 /// points. Cost: O(n log n) time; about 90 + 8 `neighbours` bytes per point beside the result.

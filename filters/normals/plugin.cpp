@@ -30,22 +30,22 @@ SCANMILL_FILTER() {
         .param("neighbours", &P::neighbours,
                "Number of nearest other positions. The point itself counts in addition; its duplicates do not count.",
                at_least(2), at_most(1000))
-        .choice("orient", &P::orient,
-                {{"auto", P::Orient::automatic,
-                  "As `sensor` if there is a column `approach` or a `scanner`; else as `column` if there is a column "
-                  "`normal` that does not contradict itself; else as `tree`."},
-                 {"sensor", P::Orient::sensor,
-                  "Towards the scanner; where the surface is seen edge-on, consistent with the neighbours."},
-                 {"known", P::Orient::known,
-                  "As `sensor` if there is a column `approach` or a `scanner`; else the points stay as they are, for "
-                  "steps that can do without normals."},
-                 {"column", P::Orient::column,
-                  "On the side of the column `normal`; only the direction is estimated anew."},
-                 {"tree", P::Orient::tree,
-                  "Consistent with the neighbours, along a spanning tree. The tree starts at the highest point of "
-                  "every component, where up is outside."},
-                 {"none", P::Orient::none, "Either of the two sides."}},
-                "Which side is outside.")
+        .choice(
+            "orient", &P::orient,
+            {{"auto", P::Orient::automatic,
+              "As `sensor` if there is a column `approach` or a `scanner`; else as `column` if there is a column "
+              "`normal` that does not contradict itself; else as `tree`."},
+             {"sensor", P::Orient::sensor,
+              "Towards the scanner; where the surface is seen edge-on, consistent with the neighbours."},
+             {"known", P::Orient::known,
+              "As `sensor` if there is a column `approach` or a `scanner`; else the points stay as they are, for "
+              "steps that can do without normals."},
+             {"column", P::Orient::column, "On the side of the column `normal`; only the direction is estimated anew."},
+             {"tree", P::Orient::tree,
+              "Consistent with the neighbours, along a spanning tree. The tree starts at the highest point of "
+              "every component, where up is outside."},
+             {"none", P::Orient::none, "Either of the two sides."}},
+            "Which side is outside.")
         .param("scanner", &P::scanner,
                "x, y, z of the scanner, in the coordinates of the file, for a scan from one position.", size(3))
         .metric(

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = PoissonParams;
-    return Declare<P>("poisson", 4)
+    return Declare<P>("poisson", 5)
         .summary("Makes a surface of points with normals, also where points are missing.")
         .source("Kazhdan, Hoppe 2013, Screened Poisson surface reconstruction; by PCL")
         .ties(

@@ -22,10 +22,13 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
+#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
@@ -39,6 +42,8 @@ constexpr double most_scale = 10;
 constexpr std::size_t neighbours = 8;
 constexpr double far_factor = 2;  // points are far beyond this multiple of the distance to the 8th neighbour
 constexpr double doubtful_share = 0.05;
+/// A vertex farther than this from every point, in spacings of the surface, is invented.
+constexpr double wired_spacings = 4;
 constexpr double least_flatness = 1e-12;  // points with a smaller flatness are on one line
 constexpr u32 most_crack_edges = 12;  // a longer loop is where the surface leaves the octree's cube
 constexpr std::size_t chunk = 1 << 10;
@@ -277,7 +282,7 @@ void warn_of_columns(const PointCloud& cloud, Context& context) {
     warn_of_dropped(others, "columns of the points", "the vertices are new", context);
 }
 
-void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t open_cracks, bool inside_out,
+void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t open_cracks, std::size_t turned,
                    Context& context) {
     if (result.without_normal > 0)
         context.warn(fmt::format("{} not used: {} 0, NaN or infinite",
@@ -292,8 +297,11 @@ void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t op
             fmt::format("{} between cells of different sizes {} open in the surface: every triangulation of the hole "
                         "would intersect something",
                         count_text(open_cracks, "crack", "cracks"), by_count(open_cracks, "stays", "stay")));
-    if (inside_out)
-        context.warn("the normals point into the volume that the surface encloses; the surface is turned like them");
+    if (turned > 0)
+        context.warn(fmt::format(
+            "the normals point into the volume that the surface encloses; {} turned to face outwards, or inwards round "
+            "a cavity",
+            count_text(turned, "triangle was", "triangles were")));
     if (result.invented > doubtful_share)
         context.doubt(
             fmt::format("{:.1f} % of the area is far from all points, and so invented; a higher trim, or "
@@ -336,7 +344,6 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     const auto ends = static_cast<std::size_t>(
         std::ranges::count_if(boundary_loops(whole, half_edges::opposites(whole)),
                               [](const auto& loop) { return loop.size() > most_crack_edges; }));
-    const bool inside_out = ends == 0 && signed_volume(whole.positions, whole.triangles) < 0;
 
     result.missed = missed_share(whole, tree.positions(), support, result.cell, context);
 
@@ -350,10 +357,17 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     }
     result.invented = area > 0 ? invented / area : 0;
     result.mesh = trimmed(std::move(whole), support, removed, params);
+    const std::size_t turned = face_outwards(result.mesh, context);
     result.trimmed = vertices - result.mesh.positions.size();
     result.loops = boundary_loops(result.mesh, half_edges::opposites(result.mesh)).size();
     warn_of_columns(cloud, context);
-    report_doubts(result, ends, cracks.open, inside_out, context);
+    report_doubts(result, ends, cracks.open, turned, context);
+    const double reach = wired_spacings * edge_spacing(result.mesh);
+    NeighbourBuffer buffer;
+    const auto is_invented = [&](u32 vertex) {
+        return tree.nearest_to(result.mesh.positions[vertex], 1, buffer).front().squared > reach * reach;
+    };
+    for (std::string& doubt : doubts_about_handles(result.mesh, is_invented)) context.doubt(std::move(doubt));
 
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
     context.metric("trimmed", static_cast<double>(result.trimmed));

@@ -70,13 +70,16 @@ struct PoissonResult {
 /// Pre:  the column `normal`, 3 numbers, of any length above 0, that points outwards; finite coordinates; at least 4
 ///       different positions with a normal, not on one line. Throws Error otherwise, for a parameter out of range, if
 ///       no surface separates the points, and if trimming leaves no triangle.
-/// Post: triangles are counter-clockwise seen from the side to which the normals point. With a trim of 0 and no
+/// Post: triangles are counter-clockwise seen from the side to which the normals point, except those of closed
+///       components: these face outwards, or inwards round a cavity (see sides.hpp). With a trim of 0 and no
 ///       `max_distance`, the surface is closed, unless it leaves the octree's cube, which is centred on the points'
 ///       box. The surface of an open sheet leaves the cube. A surface with a gap near a face of the cube may leave it,
 ///       too.
 /// Doubts its result if more than 5 % of its area is invented, of the points are missed, or of the vertices are against
-/// their points. Warns of points without a normal, of a surface that leaves the cube, of cracks that stay open, and of
-/// a closed surface that is inside out. Columns of the points other than `normal` are dropped, with a warning.
+/// their points. Doubts handles that the object hardly has (see handles.hpp; invented is a vertex farther than 4
+/// median edges from every point). Warns of points without a normal, of a surface that leaves the cube, of cracks that
+/// stay open, and of normals that point into the enclosed volume. Columns of the points other than `normal` are
+/// dropped, with a warning.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; PCL works on one thread. The bytes depend
 /// on the order of the points. PCL cannot be cancelled: a cancelled call returns only after PCL's part. PCL prints

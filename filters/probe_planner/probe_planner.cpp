@@ -114,7 +114,8 @@ TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
 
 /// Throws Error if the mesh is closed and encloses a negative volume.
 void require_outward(const TriangleMesh& mesh) {
-    const double volume = signed_volume(mesh.positions.span(), mesh.triangles.span()), diagonal = surface_box(mesh).diagonal();
+    const double volume = signed_volume(mesh.positions.span(), mesh.triangles.span()),
+                 diagonal = surface_box(mesh).diagonal();
     if (volume >= -rounding * diagonal * diagonal * diagonal || !topology(mesh).closed) return;
     throw Error("the mesh is inside out: its volume is {:.4g} {}3, so that its convex edges count as concave", volume,
                 symbol(mesh.frame.unit))

@@ -114,11 +114,11 @@ struct RegionGrowResult {
 ///       every vertex form one fan. No two vertices are at one position. Triangles around a vertex do not overlap,
 ///       projected along its normal. Triangles of pass 4 are an exception, with dihedral deviations of up to 172
 ///       degrees. No triangle that was tested in space (above), nor one that closes a hole, intersects triangles near
-///       it. Triangles of pass 0 keep the limits on angles; later passes relax these. Components that enclose a volume
-///       face outwards, as do open ones that bulge; flat ones face up. If the signs of given normals are mixed or
-///       missing, three quarters of a component's normals decide which way it faces. Ties: among equal scores (to
-///       1e-9), the first point along a space-filling curve is used. So the mesh depends neither on the order of the
-///       points, up to numbering, nor on the number of threads.
+///       it. Triangles of pass 0 keep the limits on angles; later passes relax these. Closed components
+///       face outwards, or inwards round a cavity. Open ones that bulge face outwards; flat ones face up. If the signs
+///       of given normals are mixed or missing, three quarters of a component's normals decide which way it faces.
+///       Ties: among equal scores (to 1e-9), the first point along a space-filling curve is used. So the mesh depends
+///       neither on the order of the points, up to numbering, nor on the number of threads.
 ///
 /// Cost: O(n log n) time where the nearest 16 points decide; about 450 bytes per point beside the result. Other edges,
 ///       and edges without a suitable point, consider the open points within their search radius. If one of these could

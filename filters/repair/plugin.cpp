@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RepairParams;
-    return Declare<P>("repair", 3)
+    return Declare<P>("repair", 4)
         .summary("Makes an oriented manifold mesh of any triangles: stitches, orients, splits, and drops specks.")
         .source("Gueziec, Taubin, Lazarus, Horn 2001, Cutting and stitching; by CGAL")
         .ties(

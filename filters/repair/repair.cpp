@@ -20,6 +20,8 @@
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
+#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/cell_grid.hpp"
 
 namespace scanmill {
@@ -180,41 +182,23 @@ private:
         return now[(first + 1) % 3] != joined_[input[1]];
     }
 
+    /// Open components take the orientation that more of their area had. Closed ones face outwards, or inwards round a
+    /// cavity.
     void orient() {
         const Array<u32> opposite = half_edges::opposites(current());
         const u32 count = static_cast<u32>(triangles_.size());
         DisjointSets components(count);
-        std::vector<bool> is_open(count, false);
         for (u32 h = 0; h < opposite.size(); ++h)
             if (opposite[h] != half_edges::boundary) components.unite(h / 3, opposite[h] / 3);
-        struct Votes {
-            double kept = 0, reversed = 0, volume = 0;
-        };
-        std::vector<Votes> votes(count);
-        for (u32 t = 0; t < count; ++t) {
-            const u32 component = components.find(t);
-            for (const u32 h : {3 * t, 3 * t + 1, 3 * t + 2})
-                if (opposite[h] == half_edges::boundary) is_open[component] = true;
-            // Triangles without area also vote.
-            (is_reversed(t) ? votes[component].reversed : votes[component].kept) +=
+        std::vector<double> kept(count, 0), reversed(count, 0);
+        for (u32 t = 0; t < count; ++t)  // a triangle without area counts, too
+            (is_reversed(t) ? reversed : kept)[components.find(t)] +=
                 std::max(area_of(positions_, triangles_[t]), std::numeric_limits<double>::min());
-            const Vec3& origin = positions_[triangles_[component][0]];
-            const auto& [a, b, c] = triangles_[t];
-            votes[component].volume +=
-                (positions_[a] - origin).dot((positions_[b] - origin).cross(positions_[c] - origin));
-        }
-        std::vector<bool> turns(count, false);
-        double volume = 0;
+        for (u32 t = 0; t < count; ++t)
+            if (reversed[components.find(t)] > kept[components.find(t)]) std::swap(triangles_[t][1], triangles_[t][2]);
+        const Array<u8> wrong = facing_wrong(current(), context_);
         for (u32 t = 0; t < count; ++t) {
-            if (components.find(t) != t) continue;
-            const Votes& its = votes[t];
-            const bool agree = its.kept == 0 || its.reversed == 0;
-            turns[t] = agree || is_open[t] ? its.reversed > its.kept : its.volume < 0;
-            volume += turns[t] ? -its.volume : its.volume;
-        }
-        const bool is_closed = std::ranges::find(is_open, true) == is_open.end(), inside_out = is_closed && volume < 0;
-        for (u32 t = 0; t < count; ++t) {
-            if (turns[components.find(t)] != inside_out) std::swap(triangles_[t][1], triangles_[t][2]);
+            if (wrong[t] != 0) std::swap(triangles_[t][1], triangles_[t][2]);
             result_.oriented += is_reversed(t);
         }
     }
@@ -482,7 +466,7 @@ bool are_edges(std::span<const Edge> edges, const TriangleMesh& mesh) {
 }
 
 /// Whether the mesh needs no repair. In rare cases false although a closer look would find that it needs none.
-bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairParams& params) {
+bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairParams& params, Context& context) {
     if (!shape.genus || shape.unused_vertices > 0) return false;
     if (params.stitch.value() > 0 && !shape.closed) return false;
     if (params.min_component.value() > 0 && shape.components > 1) return false;
@@ -493,19 +477,13 @@ bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairP
     std::vector<u32> corners(positions.size(), 0);
     for (const Triangle& triangle : mesh.triangles)
         for (const u32 v : triangle) ++corners[v];
-    double volume = 0, sum = 0;
-    const Vec3& origin = positions[mesh.triangles[0][0]];
     for (const auto& [a, b, c] : mesh.triangles) {
         // If two triangles have the same corners, all three corners are in two triangles.
         if (corners[a] == 2 && corners[b] == 2 && corners[c] == 2) return false;
         if (collinear(positions[a], positions[b], positions[c])) return false;
-        const double part = (positions[a] - origin).dot((positions[b] - origin).cross(positions[c] - origin));
-        volume += part;
-        sum += std::abs(part);
     }
-    constexpr double rounding = 1e-9;
-    return (!shape.closed || volume > rounding * sum) && are_edges(mesh.edges.span(), mesh) &&
-           are_edges(mesh.sharp_edges.span(), mesh);
+    return are_edges(mesh.edges.span(), mesh) && are_edges(mesh.sharp_edges.span(), mesh) &&
+           std::ranges::count(facing_wrong(mesh, context), u8(1)) == 0;
 }
 
 }  // namespace
@@ -514,7 +492,7 @@ RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Contex
     require_usable(mesh, params);
     context.check_cancelled();
     const MeshTopology before = topology(mesh);
-    const bool is_unchanged = is_sound(mesh, before, params);
+    const bool is_unchanged = is_sound(mesh, before, params, context);
     RepairResult result =
         is_unchanged ? RepairResult{.mesh = mesh, .was_closed = before.closed} : Repair(mesh, params, context).run();
     const MeshTopology after = is_unchanged ? before : topology(result.mesh);
@@ -525,6 +503,7 @@ RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Contex
             "`fill-holes`",
             count_text(after.boundary_loops, "boundary loop", "boundary loops"),
             count_text(result.split_edges, "edge had", "edges had")));
+    for (std::string& doubt : doubts_about_handles(result.mesh)) context.doubt(std::move(doubt));
     context.metric("oriented", static_cast<double>(result.oriented));
     context.metric("stitched", static_cast<double>(result.stitched));
     context.metric("split-vertices", static_cast<double>(result.split_vertices));

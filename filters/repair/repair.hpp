@@ -46,10 +46,9 @@ struct RepairResult {
 /// 3. Orient and split (CGAL). Triangles at an edge with two triangles are oriented equally, starting from the first
 ///    triangle. Edges with three or more triangles are borders, and so are edges where equal orientation is impossible
 ///    (as on a Moebius strip). There, vertices get copies so that every vertex has one fan of triangles. Copies are at
-///    the same position. Then each component whose input triangles agree keeps their orientation. Another component
-///    that is closed encloses a positive volume. Another one that is open takes the orientation that more of its area
-///    had, in a tie that of its first triangle. A mesh without boundary whose components together enclose a negative
-///    volume is turned as a whole.
+///    the same position. Then each closed component faces outwards, or inwards if it bounds a cavity (see sides.hpp).
+///    An open component takes the orientation that more of its area had, in a tie that of its first triangle. A closed
+///    component without volume does the same.
 /// 4. Triangles of three exactly collinear vertices are replaced: the longest edge is flipped. At the boundary they are
 ///    removed, and vertices at which they joined two fans are split. A triangle whose flip would repeat an existing
 ///    edge stays, with a warning.
@@ -66,8 +65,8 @@ struct RepairResult {
 /// Post: at most two triangles at an edge, oriented equally; one fan at a vertex; no triangle with a repeated vertex;
 ///       no unused vertex. A second run with the same parameters and `min_component` 0 changes no triangle, except that
 ///       it joins and splits the same vertices again.
-/// Doubts its result if more than 5 % of the area is removed (duplicates do not count), or if a mesh without boundary
-/// has a boundary afterwards.
+/// Doubts its result if more than 5 % of the area is removed (duplicates do not count), if a mesh without boundary has
+/// a boundary afterwards, and if it has handles that the object hardly has (see handles.hpp).
 ///
 /// Deterministic: serial, the same bytes on every machine. Cost: O(n log n) time, about 500 bytes per triangle. An
 /// oriented manifold that needs no repair is returned in linear time, without a copy.

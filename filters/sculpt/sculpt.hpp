@@ -88,7 +88,7 @@ struct SculptResult {
 /// Cost: linear in the cells to find the boundary; O(r log r) for r removals. About 12 bytes per cell and 40 per
 ///       boundary triangle in addition to the result.
 /// Metrics: see plugin.cpp. Warns about points that stay in the interior. Doubts the result if more than half of the
-/// cells are removed, and passes on doubts_about_surface().
+/// cells are removed, and passes on doubts_about_surface() and doubts_about_handles().
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps.
 SculptResult sculpt(const TetMesh& tets, const SculptParams& params, Context& context);
 

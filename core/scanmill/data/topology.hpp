@@ -38,8 +38,8 @@ MeshTopology topology(const TriangleMesh& mesh);
 /// The volume that a closed surface encloses, negative if it is inside out; 0 without triangles. Cost: linear.
 double signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
-/// Whether the mesh is closed and encloses a negative volume. A volume below 1e-9 of its parts counts as 0. Cost: linear;
-/// that of topology() only if the volume is negative.
+/// Whether the mesh is closed and encloses a negative volume. A volume below 1e-9 of its parts counts as 0. Cost:
+/// linear; that of topology() only if the volume is negative.
 bool is_inside_out(const TriangleMesh& mesh);
 
 }  // namespace scanmill

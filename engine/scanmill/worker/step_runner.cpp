@@ -8,6 +8,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 #include "scanmill/kinds/value.hpp"
@@ -146,6 +147,14 @@ void require_declared(const Outputs& outputs, const Metrics& metrics, const Filt
     }
 }
 
+void doubt_inside_out(const Outputs& outputs, const FilterSpec& spec, Context& context) {
+    for (const PortSpec& port : spec.outputs)
+        if (const TriangleMesh* mesh = outputs.find(port.name)->find<TriangleMesh>(); mesh && is_inside_out(*mesh))
+            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g}",
+                                      signed_volume(mesh->positions.span(), mesh->triangles.span())),
+                          port.name);
+}
+
 /// Calls `check`. Puts the file's path before the sentence of an error, as readers do.
 void naming_file(const std::filesystem::path& file, const std::function<void()>& check) {
     try {
@@ -209,6 +218,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
             throw;
         }
         require_declared(outputs, context.metrics(), step.spec);
+        doubt_inside_out(outputs, step.spec, context);
         record();
         return outputs;
     } catch (...) {

@@ -52,6 +52,16 @@ TEST(FillHoles, OfACubeWithoutAFace_IsTheCube) {
     expect_laws(mesh, result);
 }
 
+TEST(FillHoles, ASurfaceThatFacesInwards_FacesOutwardsOnceItIsClosed) {
+    TriangleMesh mesh = open_cube();
+    Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+    mesh.triangles = std::move(triangles);
+    const Filled result = filled(mesh);
+    EXPECT_NEAR(signed_volume(result.mesh), 1, 1e-12);
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("12 triangles were turned")));
+}
+
 TEST(FillHoles, OfAClosedMesh_AddsOnlyTheMarks) {
     const TriangleMesh mesh = cube();
     const Filled result = filled(mesh);

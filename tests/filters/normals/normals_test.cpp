@@ -201,9 +201,8 @@ TEST(Normals, ComponentsWithoutAScanner_AreCountedInTheDoubt) {
     // The scanner of the second of four sheets is known.
     PointCloud cloud = sheet(22, 0);
     for (int i = 1; i < 4; ++i) cloud = joined(cloud, moved(sheet(20, 0), 1, {90.0 * i, 0, 0}));
-    cloud = with_approach(cloud, [&](std::size_t row) {
-        return row >= 484 && row < 884 ? Vec3(0, 0, 1) : Vec3(Vec3::Zero());
-    });
+    cloud = with_approach(
+        cloud, [&](std::size_t row) { return row >= 484 && row < 884 ? Vec3(0, 0, 1) : Vec3(Vec3::Zero()); });
     const Estimated result = estimated(cloud);
     EXPECT_EQ(result.components, 4u);
     EXPECT_EQ(result.by_sensor, 400u);
@@ -331,7 +330,8 @@ TEST(NormalsColumn, ThatContradictsItself_IsDoubtfulAndLeftToTheTree) {
 
 TEST(NormalsColumn, HalfReversed_IsDoubtfulAndKept) {
     const PointCloud sphere = fibonacci_sphere(2000);
-    const PointCloud half = with_normals(sphere, [&](std::size_t row) { return sphere.positions[row].x() > 0 ? 1 : -1; });
+    const PointCloud half =
+        with_normals(sphere, [&](std::size_t row) { return sphere.positions[row].x() > 0 ? 1 : -1; });
     const Estimated result = estimated(half);
     EXPECT_NEAR(static_cast<double>(facing_out(result)), 1000, 30);
     EXPECT_THAT(result.doubts, ElementsAre(testing::AllOf(HasSubstr("contradicts itself"), HasSubstr("regions"))));

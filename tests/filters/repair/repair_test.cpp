@@ -127,6 +127,14 @@ TEST(Repair, AMeshThatIsInsideOut_IsTurned_ACavityIsNot) {
     EXPECT_EQ(open.oriented, 0u);
 }
 
+TEST(Repair, BodiesThatFaceInwards_AreTurnedBesideOthers_ACavityInACavityFacesOutwards) {
+    const TriangleMesh large = geodesic_sphere(3, 4), middle = geodesic_sphere(2, 4), small = geodesic_sphere(1, 4);
+    const TriangleMesh nested = both(both(muddled(large, 1, 1), middle), muddled(small, 1, 1));
+    const Repaired result = repaired(nested);
+    EXPECT_EQ(result.oriented, nested.triangles.size());
+    EXPECT_NEAR(signed_volume(result.mesh), signed_volume(large) - signed_volume(middle) + signed_volume(small), 1e-9);
+}
+
 TEST(Repair, TwoCubesWithOneWall_AreSeparatedAndDoubtful) {
     const Repaired result = repaired(both(cube(), shifted(cube(), {1, 0, 0})));
     EXPECT_GT(result.metric("boundary-loops"), 0);

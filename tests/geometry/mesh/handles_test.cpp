@@ -72,8 +72,9 @@ TriangleMesh box_with_hole(u32 size, u32 width) {
         }
     const auto walls = [&](u32 low, u32 high, bool outward) {
         for (u32 i = low; i < high; ++i)
-            for (const auto& [a, b] : {std::pair(at(i, low, 0), at(i + 1, low, 0)), std::pair(at(high, i, 0), at(high, i + 1, 0)),
-                                       std::pair(at(i + 1, high, 0), at(i, high, 0)), std::pair(at(low, i + 1, 0), at(low, i, 0))}) {
+            for (const auto& [a, b] :
+                 {std::pair(at(i, low, 0), at(i + 1, low, 0)), std::pair(at(high, i, 0), at(high, i + 1, 0)),
+                  std::pair(at(i + 1, high, 0), at(i, high, 0)), std::pair(at(low, i + 1, 0), at(low, i, 0))}) {
                 const u32 up = (size + 1) * (size + 1);
                 outward ? quad(a, b, b + up, a + up) : quad(b, a, a + up, b + up);
             }

@@ -136,7 +136,8 @@ std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh,
     };
     if (const auto count = std::ranges::count_if(loops, passes_invented); count > 0)
         return {fmt::format(
-            "the surface has genus {}, and {} less than {} spacings round {} through parts that no point shows; {}: the "
+            "the surface has genus {}, and {} less than {} spacings round {} through parts that no point shows; {}: "
+            "the "
             "object may not have these handles; scan the missing part, or compare the surface with the object",
             *shape.genus, count_text(static_cast<std::size_t>(count), "loop of", "loops of"), short_loop,
             by_count(static_cast<std::size_t>(count), "a handle passes", "handles pass"), where)};

@@ -30,9 +30,7 @@ struct Shell {
         for (const Triangle& triangle : triangles) vertex = std::min(vertex, std::ranges::min(triangle));
         return vertex;
     }
-    bool faces_wrong() const {
-        return std::abs(volume) > rounding * parts && (volume > 0) != (around % 2 == 0);
-    }
+    bool faces_wrong() const { return std::abs(volume) > rounding * parts && (volume > 0) != (around % 2 == 0); }
 };
 
 void add(Shell& shell, const TriangleMesh& mesh, u32 row) {
