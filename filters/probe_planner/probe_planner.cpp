@@ -9,6 +9,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "probe_planner/contact_range.hpp"
 #include "probe_planner/machine.hpp"
@@ -348,12 +351,37 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
                         "touches may miss edges; raise scanner-error, or scan more finely",
                         result.edge_roughness, settings.error));
     if (result.unreachable == touches)
-        context.doubt(fmt::format("none of {} can be made: {} concave, {} too narrow, {} too tilted and {} obstructed",
-                                  count_text(touches, "touch", "touches"), result.concave, result.too_narrow,
-                                  result.too_tilted, result.obstructed));
+        context.doubt(
+            fmt::format("none of {} can be made: {} concave, {} too narrow, {} too tilted and {} obstructed; {}",
+                        count_text(touches, "touch", "touches"), result.concave, result.too_narrow, result.too_tilted,
+                        result.obstructed, way_out(result.plan.touches)));
 }
 
 }  // namespace
+
+std::string way_out(std::span<const ProbeTouch> touches) {
+    std::size_t concave = 0, unsafe = 0, holes = 0, tilted = 0, obstructed = 0;
+    for (const ProbeTouch& touch : touches) switch (touch.reason) {
+            case ProbeReason::none: break;
+            case ProbeReason::concave: ++concave; break;
+            case ProbeReason::too_narrow:
+                ++(is_empty({touch.phi_min, touch.phi_max}) && is_empty({touch.phi_known_min, touch.phi_known_max})
+                       ? unsafe
+                       : holes);
+                break;
+            case ProbeReason::too_tilted: ++tilted; break;
+            case ProbeReason::obstructed: ++obstructed; break;
+        }
+    const std::pair<std::size_t, const char*> ways[] = {
+        {unsafe, "a larger ball, or a finer scan with a smaller scanner-error, leaves safe directions"},
+        {holes, "a smaller ball passes the holes"},
+        {tilted, "a larger max-tilt or another machine-axis permits more directions"},
+        {obstructed,
+         "a smaller ball, a thinner stylus or another machine-axis keeps clear of the part; on rough lines, a larger "
+         "ball reaches more"},
+        {concave, "no ball meets a concave edge; choose other features"}};
+    return std::ranges::max_element(ways, {}, [](const auto& way) { return way.first; })->second;
+}
 
 ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
                                  const ProbePlannerParams& params, Context& context) {

@@ -6,6 +6,8 @@
 /// Source: Wang 2006, chapter 5; both faces in closed form, collisions, order and the pairing of lines are our own.
 
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "scanmill/data/features.hpp"
@@ -94,7 +96,7 @@ struct ProbePlannerResult {
 /// Post: a false share is the share of 1,000 seeded random positions per touch for which the ball meets a face first.
 ///       It evaluates the closed form that chose phi. So without `approach` it is 0 and only confirms the range. For
 ///       order and moves see tour.hpp. Metrics: the counts above. Warns if the edge roughness exceeds `scanner_error`.
-///       Doubts the result if no touch can be made.
+///       Doubts the result if no touch can be made, with a way out.
 ///
 /// Throws Error: a parameter out of range; features and mesh in different units or named frames; a mesh without
 /// triangles or with a vertex that is not finite; a closed mesh with a negative volume; features as in
@@ -106,5 +108,10 @@ struct ProbePlannerResult {
 /// takes up to some milliseconds.
 ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
                                  const ProbePlannerParams& params, Context& context);
+
+/// What to change so that more touches can be made, by the most frequent reason of those that cannot; of equally
+/// frequent ones: no safe direction, holes, tilt, obstacles, concave edges. Where no direction is safe, a larger ball
+/// reaches more; in a hole, a smaller one. Pre: not empty.
+std::string way_out(std::span<const ProbeTouch> touches);
 
 }  // namespace scanmill

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "probe_planner/probe_planner.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
@@ -91,7 +92,8 @@ std::vector<u32> made_touches(const ProbePlan& plan) {
         if (plan.touches[row].reason == ProbeReason::none) rows.push_back(row);
     if (rows.empty())
         throw Error("the plan has {}, of which none is made", count_text(plan.touches.size(), "touch", "touches"))
-            .hint("the touches' `reason` gives the cause; plan with a smaller ball, or with another approach");
+            .hint(plan.touches.empty() ? "plan with other features, or with a smaller spacing"
+                                       : "the touches' `reason` gives the cause; " + way_out(plan.touches));
     std::ranges::stable_sort(rows, {}, [&](u32 row) { return plan.touches[row].order; });
     return rows;
 }

@@ -14,7 +14,10 @@
 namespace scanmill::test {
 namespace {
 
+using testing::AllOf;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 const TriangleMesh& fine_cube() {
     static const TriangleMesh mesh = box(Vec3::Zero(), Vec3::Constant(10), 5);
@@ -143,6 +146,37 @@ TEST(ProbePlanner, WideWedge_IsTooNarrowForTheError) {
     // acos(error) must be 75 degrees at least: an error of 0.2588.
     EXPECT_EQ(ridge_reason(0.25), ProbeReason::none);
     EXPECT_EQ(ridge_reason(0.27), ProbeReason::too_narrow);
+}
+
+TEST(ProbePlanner, EdgesWithoutSafeDirections_NeedALargerBall) {
+    // acos(error / radius) must be 45 degrees at least: a radius of 1.414 for an error of 1.
+    const TriangleMesh mesh = box(Vec3::Zero(), Vec3::Constant(20), 3);
+    ProbePlannerParams params = probe_of(1.3, 1, 10);
+    params.max_tilt = Angle::degrees(180);
+    const Planned narrow = planned(mesh, params);
+    EXPECT_EQ(narrow.too_narrow, narrow.plan.touches.size());
+    ASSERT_EQ(narrow.doubts.size(), 1u);
+    EXPECT_THAT(narrow.doubts[0].text, AllOf(HasSubstr("larger ball"), Not(HasSubstr("smaller ball"))));
+    params.radius = 2;
+    EXPECT_LT(planned(mesh, params).unreachable, narrow.unreachable) << "the way out leads out";
+}
+
+TEST(ProbePlanner, TheWayOut_FollowsTheMostFrequentReason) {
+    const auto touch = [](ProbeReason reason, double range = ProbeTouch::nan) {
+        ProbeTouch made;
+        made.reason = reason;
+        made.phi_min = -range;
+        made.phi_max = range;
+        return made;
+    };
+    using enum ProbeReason;
+    EXPECT_THAT(way_out(std::vector{touch(too_narrow), touch(obstructed), touch(too_narrow)}),
+                HasSubstr("larger ball"));
+    EXPECT_THAT(way_out(std::vector{touch(too_narrow, 0.5)}), HasSubstr("smaller ball"));
+    EXPECT_THAT(way_out(std::vector{touch(too_tilted, 0.5), touch(none, 0.5)}), HasSubstr("max-tilt"));
+    EXPECT_THAT(way_out(std::vector{touch(obstructed, 0.5)}), HasSubstr("stylus"));
+    EXPECT_THAT(way_out(std::vector{touch(concave)}), HasSubstr("features"));
+    EXPECT_THAT(way_out(std::vector{touch(concave), touch(too_narrow)}), HasSubstr("larger ball")) << "a tie";
 }
 
 /// Two blocks with a slot between them.
@@ -395,8 +429,10 @@ TEST(ProbePlanner, RoundHole_IsTooNarrowIfTheBallPassesItsAxis) {
     EXPECT_EQ(wide.too_narrow, wide.plan.touches.size()) << "7.2 sin 45 deg = 5.09";
     EXPECT_EQ(wide.plan.touches.size(), 10u);
     ASSERT_EQ(wide.doubts.size(), 1u);
-    EXPECT_EQ(wide.doubts[0].text,
-              "none of 10 touches can be made: 0 concave, 10 too narrow, 0 too tilted and 0 obstructed");
+    EXPECT_THAT(
+        wide.doubts[0].text,
+        AllOf(HasSubstr("none of 10 touches can be made: 0 concave, 10 too narrow, 0 too tilted and 0 obstructed"),
+              HasSubstr("a smaller ball")));
     params.approach = Angle::degrees(10);  // steeper: 7.2 sin 35 deg = 4.13
     EXPECT_EQ(planned(features, plate, params).too_narrow, 0u);
     params.approach.reset();

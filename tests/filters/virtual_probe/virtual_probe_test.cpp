@@ -246,6 +246,10 @@ TEST(VirtualProbeRefusals, PlansWithoutTouches) {
     ProbePlan plan = plan_of({touch_at({0, 0, 0}, 0)});
     plan.touches[0].reason = ProbeReason::obstructed;
     EXPECT_EQ(refusal(plan, wedge(1)).sentence(), "the plan has 1 touch, of which none is made");
+    EXPECT_THAT(refusal(plan, wedge(1)).hint(), HasSubstr("smaller ball"));
+    plan.touches[0].reason = ProbeReason::too_narrow;
+    plan.touches[0].phi_min = plan.touches[0].phi_max = ProbeTouch::nan;
+    EXPECT_THAT(refusal(plan, wedge(1)).hint(), HasSubstr("larger ball")) << "no direction was safe";
     EXPECT_EQ(refusal(plan_of({}), wedge(1)).sentence(), "the plan has 0 touches, of which none is made");
     EXPECT_EQ(refusal(plan_of({touch_at({0, 300, 0}, 0)}), wedge(1)).sentence(), "the only touch missed the mesh");
     EXPECT_EQ(refusal(plan_of({touch_at({0, 300, 0}, 0), touch_at({0, 301, 0}, 0)}), wedge(1)).sentence(),
