@@ -57,7 +57,7 @@ TEST_F(CheckOfABatch, TwoScansThatWriteOneFile_AreFoundWithoutReadingThem) {
     EXPECT_EQ(found.exit_code, 2);
     EXPECT_THAT(found.err, AllOf(HasSubstr("nightly.yaml:3:9: scan 'scans/ok.pcd' under variant 'default' and scan "
                                            "'scans/ok.ply' under variant 'default' would both write 'ok.ply'"),
-                                 HasSubstr("put {variant}, {workflow} or {folder}")));
+                                 HasSubstr("rename one of the scans")));
 }
 
 TEST_F(CheckOfABatch, PlanOfEveryPart_IsPrinted) {

@@ -679,8 +679,8 @@ private:
                                                           : std::to_string(output.source.input);
             const std::string file = expand_template(output.file, values);
             const std::string content = part + "\n" + name + "\n" + source;
-            files.add(file, {content, output.source.port}, writer);
-            files.add(description_of(file).string(), {content, output.source.port + " described"}, writer);
+            files.add(file, {content, output.source.port}, writer, values);
+            files.add(description_of(file).string(), {content, output.source.port + " described"}, writer, values);
         }
     }
 

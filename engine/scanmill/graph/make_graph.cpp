@@ -204,9 +204,9 @@ private:
                 const std::string writer = cell_text(scan_name, planned.name, parts_.size() > 1 ? values.workflow : "");
                 const std::string content = fmt::format("{} {} {}", node, scan, plan_->workflow.file);
                 const fs::path target =
-                    output_files_.add(expand_template(name, values), {content, source.port}, writer);
+                    output_files_.add(expand_template(name, values), {content, source.port}, writer, values);
                 output_files_.add(description_of(expand_template(name, values)), {content, source.port + " described"},
-                                  writer);
+                                  writer, values);
                 cell.outputs.push_back({target, node, source.port});
             }
             graph_.cells.push_back(std::move(cell));

@@ -47,8 +47,9 @@ void OutputFiles::protect(const fs::path& file) {
         absent_inputs_.insert(std::move(real));
 }
 
-fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer) {
-    const auto [file, is_new] = names_.add(name, content, writer);
+fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer,
+                          const TemplateValues& values) {
+    const auto [file, is_new] = names_.add(name, content, writer, values);
     if (!is_new) return file;
     std::error_code unknown;  // for a name that is too long, writing fails later
     if (fs::is_directory(file, unknown))

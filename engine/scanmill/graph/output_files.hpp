@@ -18,10 +18,11 @@ public:
     void protect(const std::filesystem::path& file);
 
     /// Adds an output and returns its absolute path. `name` is relative to the output folder, in normal form. `writer`
-    /// names the cell in messages. Throws Error if an output with other content has the same path, or if one output's
-    /// path is the folder of another output. Throws Error if the path is an existing folder, if it or previous_of() it
-    /// is an input, and if a symbolic link leads it out of the output folder.
-    std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
+    /// names the cell in messages, `values` are its placeholders. Throws Error if an output with other content has the
+    /// same path, or if one output's path is the folder of another output. Throws Error if the path is an existing
+    /// folder, if it or previous_of() it is an input, and if a symbolic link leads it out of the output folder.
+    std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer,
+                              const TemplateValues& values = {});
 
 private:
     using Identity = std::pair<std::uintmax_t, std::uintmax_t>;  // device and inode

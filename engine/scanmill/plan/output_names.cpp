@@ -3,20 +3,36 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 
 namespace fs = std::filesystem;
 
-OutputNames::Added OutputNames::add(const std::string& name, const OutputContent& content, const std::string& writer) {
+/// Names the placeholders that differ between two cells; without any, what to rename.
+std::string OutputNames::way_out(const Entry& one, const Entry& other) {
+    const TemplateValues &a = one.values, &b = other.values;
+    std::vector<std::string> differing;
+    if (a.scan != b.scan) differing.push_back("{scan}");
+    if (a.folder != b.folder) differing.push_back("{folder}");
+    if (a.variant != b.variant) differing.push_back("{variant}");
+    if (a.workflow != b.workflow) differing.push_back("{workflow}");
+    if (differing.size() > 1) return "put one of " + enumerated(differing) + " into the output's name";
+    if (!differing.empty()) return "put " + differing.front() + " into the output's name";
+    return one.writer == other.writer ? "give the outputs, or the workflows, different names"
+                                      : "no placeholder differs between the two; rename one of the scans";
+}
+
+OutputNames::Added OutputNames::add(const std::string& name, const OutputContent& content, const std::string& writer,
+                                    const TemplateValues& values) {
     const fs::path file = folder_ / name;
     if (const auto found = files_.find(file); found != files_.end()) {
         if (found->second.content != content)
             throw Error("{} and {} would both write '{}'", found->second.writer, writer, file.string())
-                .hint(
-                    "put {variant}, {workflow} or {folder}, the name of the scan's folder, into the output's name, or "
-                    "rename a scan");
+                .hint(way_out(found->second, {content, writer, values}));
         return {file, false};
     }
     if (const auto folder = folders_.find(file); folder != folders_.end())
@@ -26,7 +42,7 @@ OutputNames::Added OutputNames::add(const std::string& name, const OutputContent
         if (const auto other = files_.find(part); other != files_.end())
             throw Error("{} would write '{}' into a folder that {} writes as a file", writer, file.string(),
                         other->second.writer);
-    files_.emplace(file, Entry{content, writer});
+    files_.emplace(file, Entry{content, writer, values});
     for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path()) folders_.emplace(part, writer);
     return {file, true};
 }

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "scanmill/plan/plan.hpp"
+
 namespace scanmill {
 
 /// The content of an output file: one output port of one node, for one scan under one workflow.
@@ -25,15 +27,20 @@ public:
         std::filesystem::path file;
         bool is_new = false;  ///< false: the same content was added before
     };
-    /// Adds an output. `name` is relative to the folder, in normal form. `writer` names the cell in messages. Throws
-    /// Error if an output with other content has the same name, and if the file of one output is the folder of another.
-    Added add(const std::string& name, const OutputContent& content, const std::string& writer);
+    /// Adds an output. `name` is relative to the folder, in normal form. `writer` names the cell in messages, and
+    /// `values` are the cell's placeholders, for hints. Throws Error if an output with other content has the same name,
+    /// and if the file of one output is the folder of another.
+    Added add(const std::string& name, const OutputContent& content, const std::string& writer,
+              const TemplateValues& values = {});
 
 private:
     struct Entry {
         OutputContent content;
         std::string writer;
+        TemplateValues values;
     };
+
+    static std::string way_out(const Entry& one, const Entry& other);
 
     std::filesystem::path folder_;
     std::map<std::filesystem::path, Entry> files_;

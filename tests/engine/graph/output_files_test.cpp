@@ -10,8 +10,11 @@
 namespace scanmill {
 namespace {
 
+using test::error_of;
 using test::sentence_of;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 namespace fs = std::filesystem;
 
 class OutputFilesTest : public testing::Test {
@@ -36,6 +39,20 @@ TEST_F(OutputFilesTest, SameContent_MayBeAddedTwice) {
                     outputs.add("a.ply", {"other", "mesh"}, "D");
                 }),
                 HasSubstr("A and D would both write"));
+}
+
+TEST_F(OutputFilesTest, TwoCellsOfOneFile_AreToldWhichPlaceholdersDiffer) {
+    const TemplateValues first{"a", "default", "w", "one"};
+    const auto hint = [&](const TemplateValues& second) {
+        OutputFiles outputs = files();
+        outputs.add("x.ply", {"k", ""}, "A", first);
+        return error_of([&] { outputs.add("x.ply", {"l", ""}, "B", second); }).hint();
+    };
+    EXPECT_THAT(hint({"b", "default", "w", "one"}), AllOf(HasSubstr("put {scan} into"), Not(HasSubstr("{folder}"))));
+    EXPECT_THAT(hint({"a", "default", "w", "two"}), HasSubstr("put {folder} into"));
+    EXPECT_THAT(hint({"a", "other", "w", "one"}), HasSubstr("put {variant} into"));
+    EXPECT_THAT(hint({"a", "other", "v", "one"}), HasSubstr("one of {variant} and {workflow}"));
+    EXPECT_THAT(hint(first), AllOf(HasSubstr("rename one of the scans"), Not(HasSubstr("{"))));
 }
 
 TEST_F(OutputFilesTest, FileThatIsAnothersFolder_IsRefusedInEitherOrder) {
