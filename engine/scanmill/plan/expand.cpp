@@ -249,6 +249,37 @@ private:
     std::set<std::string> lists_;
 };
 
+/// An alternative with the name of an earlier one of the same fork; null if there is none.
+const AlternativeSyntax* repeated_alternative(const std::vector<StepItem>& items) {
+    for (const StepItem& item : items) {
+        const auto* fork = std::get_if<OneOfSyntax>(&item.item);
+        if (!fork) continue;
+        std::set<std::string> names;
+        for (const AlternativeSyntax& alternative : fork->alternatives) {
+            if (!alternative.name.empty() && !names.insert(file_safe(alternative.name)).second) return &alternative;
+            if (const AlternativeSyntax* nested = repeated_alternative(alternative.steps)) return nested;
+        }
+    }
+    return nullptr;
+}
+
+void report_equal_variants(const Variant& variant, const Workflow& workflow, Diagnostics& diagnostics) {
+    const AlternativeSyntax* repeated = repeated_alternative(workflow.steps);
+    if (!repeated) {
+        diagnostics.error(variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
+                          "two variants are called '{}'; remove the value that is repeated in a sweep", variant.name);
+        return;
+    }
+    const auto* step = std::get_if<StepSyntax>(&repeated->steps.front().item);
+    const bool is_named_by_step = repeated->steps.size() == 1 && step && step->name() == repeated->name;
+    diagnostics.error(repeated->position, "two variants are called '{}', since two alternatives are called '{}'; {}",
+                      variant.name, repeated->name,
+                      is_named_by_step
+                          ? fmt::format("add `id:` with another name to one of them, as `- {{id: {}-2, {}: …}}`",
+                                        repeated->name, step->filter)
+                          : "change the `name:` of one of them");
+}
+
 }  // namespace
 
 std::vector<std::string> undeclared(const Settings& settings, const Workflow& workflow) {
@@ -275,8 +306,7 @@ void expand(const Workflow& workflow, const Settings& settings, Diagnostics& dia
     bool is_reported = false;  // report only one pair: a value repeated in a sweep gives many
     visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
         if (!names.insert(variant.name).second && !std::exchange(is_reported, true))
-            diagnostics.error(variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
-                              "two variants are called '{}'; give their alternatives different names", variant.name);
+            report_equal_variants(variant, workflow, diagnostics);
         visit(variant);
         return true;
     });

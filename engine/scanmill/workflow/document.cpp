@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <unordered_map>
 
 #include "scanmill/base/error.hpp"
@@ -76,6 +77,18 @@ std::string quoting_hint(const std::string& message) {
                    INVALID_ALIAS, ALIAS_CONTENT, MULTIPLE_ANCHORS, MULTIPLE_ALIASES}))
         return "; a text that begins with * or & needs quotes, as \"*.ply\"";
     return "";
+}
+
+/// The column, from 1, of a tab that precedes the first word of a line, or follows the dashes of list items there; 0
+/// without one.
+int tab_in_indentation(std::string_view text, int line) {
+    for (int skipped = 1; skipped < line; ++skipped) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos) return 0;
+        text.remove_prefix(end + 1);
+    }
+    const std::size_t first = text.find_first_not_of(" -");
+    return first != std::string_view::npos && text[first] == '\t' ? static_cast<int>(first) + 1 : 0;
 }
 
 /// Builds the tree from the parser's events, which deliver keys, values and items one by one.
@@ -245,7 +258,13 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
             last = next.begin;
         }
     } catch (const YAML::Exception& error) {
-        diagnostics.error(position_of(error.mark), "invalid YAML: " + error.msg + quoting_hint(error.msg));
+        const Position position = position_of(error.mark);
+        const std::string hint = quoting_hint(error.msg);
+        const int tab = hint.empty() ? tab_in_indentation(text, position.line) : 0;
+        if (tab > 0)
+            diagnostics.error({position.line, tab}, "invalid YAML: found a tab; YAML indents with spaces");
+        else
+            diagnostics.error(position, "invalid YAML: " + error.msg + hint);
     } catch (const TooMuch& too_much) {
         diagnostics.error(too_much.position, too_much.what + "; use fewer anchors and aliases");
     }

@@ -10,6 +10,7 @@
 namespace scanmill {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -122,7 +123,14 @@ TEST_F(Variants, TwoSweepsOfOneParameterName_TellWhoseTheyAre) {
 
 TEST_F(Variants, EqualNames_AreAnError) {
     plan("  - one-of: [{thin: {count: 1}}, {thin: {count: 2}}]\n");
-    EXPECT_THAT(findings_, HasSubstr("two variants are called 'thin'"));
+    EXPECT_THAT(findings_, AllOf(HasSubstr("two variants are called 'thin'"), HasSubstr("add `id:`")));
+    const Plan found = plan("  - one-of: [{thin: {count: 1}}, {id: thin-2, thin: {count: 2}}]\n");
+    EXPECT_EQ(findings_, "") << "the way out leads out";
+    EXPECT_THAT(names(found), ElementsAre("thin", "thin-2"));
+    plan("  - one-of: [{name: a, steps: [{thin: {count: 1}}]}, {name: a, steps: [{thin: {count: 2}}]}]\n");
+    EXPECT_THAT(findings_, AllOf(HasSubstr("two variants are called 'a'"), HasSubstr("`name:`")));
+    plan("  - thin: {count: {sweep: [1, 2, 1]}}\n");
+    EXPECT_THAT(findings_, AllOf(HasSubstr("two variants are called 'count=1'"), HasSubstr("sweep")));
 }
 
 TEST_F(Variants, IdOfAOneOf_StandsForWhicheverAlternativeRan) {

@@ -7,7 +7,9 @@
 namespace scanmill {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 struct Parsed {
     YamlNode root;
@@ -144,6 +146,25 @@ TEST(YamlDocument, CommaOutsideAList_IsRefusedOnceAtItsPlace) {
 }
 
 TEST(YamlDocument, ListAsKey_IsRefused) { EXPECT_FALSE(parse("? [a, b]\n: 1\n").findings.empty()); }
+
+TEST(YamlDocument, TabsInTheIndentation_AreNamed) {
+    for (const auto& [text, line, column] :
+         {std::tuple("a:\n\tb: 1\n", 2, 1), std::tuple("a:\n  - b: 1\n\t  c: 2\n", 3, 1),
+          std::tuple("a:\n  - b: 1\n  \tc: 2\n", 3, 3), std::tuple("steps:\n\t- b:\n", 2, 1),
+          std::tuple("steps:\n\t- b:\n\t- c:\n", 2, 1), std::tuple("- a: 1\n-\tb: 2\n", 2, 2)}) {
+        const Parsed parsed = parse(text);
+        ASSERT_EQ(parsed.findings.size(), 1u) << text;
+        EXPECT_EQ(parsed.findings[0].position, (Position{line, column})) << text;
+        EXPECT_THAT(parsed.findings[0].message, AllOf(HasSubstr("tab"), HasSubstr("spaces"))) << text;
+    }
+}
+
+TEST(YamlDocument, TabsElsewhere_AreNoErrors) {
+    EXPECT_TRUE(parse("a:\t1\nb: 'x\ty'\n").findings.empty());
+    const Parsed parsed = parse("a: 'x\ty'\nb: [1, 2\nc: 3\n");
+    ASSERT_FALSE(parsed.findings.empty());
+    EXPECT_THAT(parsed.findings[0].message, Not(HasSubstr("tab")));
+}
 
 TEST(YamlDocument, BrokenSyntax_NamesItsPlace) {
     const Parsed parsed = parse("a: [1, 2\nb: 3\n");
