@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "output/error_output.hpp"
@@ -13,6 +16,39 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/session/output_lock.hpp"
 #include "scanmill/worker/worker_processes.hpp"
+
+namespace {
+
+const CLI::App& innermost_command(const CLI::App& app) {
+    const std::vector<CLI::App*> commands = app.get_subcommands();
+    return commands.empty() ? app : innermost_command(*commands.front());
+}
+
+/// "; did you mean '--unit'?" An option that begins with the word comes before one that needs few edits.
+std::string meant_option(const std::string& word, const std::vector<std::string>& names) {
+    const auto longer = std::ranges::find_if(names, [&](const std::string& name) { return name.starts_with(word); });
+    if (word.size() >= 2 && longer != names.end()) return "; did you mean '--" + *longer + "'?";
+    std::string proposal = scanmill::did_you_mean(word, names);
+    if (const std::size_t quote = proposal.find('\''); quote != std::string::npos) proposal.insert(quote + 1, "--");
+    return proposal;
+}
+
+/// Reports the first argument that looks like a long option and is not one of the command's.
+std::optional<scanmill::Error> unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+    for (const std::string& argument : arguments) {
+        if (argument == "--") break;
+        if (!argument.starts_with("--")) continue;
+        const std::string word = argument.substr(2, argument.find('=') - 2);
+        if (std::ranges::find(names, word) != names.end()) continue;
+        return scanmill::Error("{} has no option '--{}'{}", command.get_name(), word, meant_option(word, names));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
@@ -48,7 +84,8 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         const auto commands = app.get_subcommands();
-        scanmill::Error described(std::string(error.what()));
+        scanmill::Error described = unknown_option(innermost_command(app), {argv + std::min(argc, 1), argv + argc})
+                                        .value_or(scanmill::Error(std::string(error.what())));
         described.set_hint("scanmill " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help");
         if (const std::string word = argc > 1 ? argv[1] : ""; commands.empty() && !word.empty() && word[0] != '-') {
             std::vector<std::string> names;

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
@@ -280,6 +281,23 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
     return inputs;
 }
 
+/// Adds the files that `--in` gives for the first input. Throws Error if one of them is a scan already.
+void add_scans(std::vector<ScanFile>& scans, const std::string& input,
+               const std::vector<std::filesystem::path>& files) {
+    std::set<std::filesystem::path> given;
+    const auto absolute = [](const std::filesystem::path& file) {
+        std::error_code ignored;  // a file that cannot be found is reported when it is read
+        return std::filesystem::weakly_canonical(file, ignored);
+    };
+    for (const ScanFile& scan : scans) given.insert(absolute(scan.path));
+    for (const std::filesystem::path& file : files) {
+        if (!given.insert(absolute(file)).second)
+            throw Error("the scan '{}' is given twice: `--in {}=…` repeats it", file.string(), input)
+                .hint("scans of the first input need no --in; give each file once");
+        scans.emplace_back(file);
+    }
+}
+
 int run_workflow(const RunOptions& options) {
     Execution execution(options.execute);
     const std::string workflow = workflow_file(options.workflow);
@@ -294,7 +312,7 @@ int run_workflow(const RunOptions& options) {
     request.inputs = parse_inputs(options.inputs);
     if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input too
         if (auto first = request.inputs.extract(checked.plan.workflow.inputs.front().name))
-            for (const std::filesystem::path& file : first.mapped()) request.scans.emplace_back(file);
+            add_scans(request.scans, first.key(), first.mapped());
     request.output_folder = options.execute.session.output_folder;
     request.seed = options.execute.seed;
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };

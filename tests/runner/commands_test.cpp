@@ -83,6 +83,23 @@ TEST(Command, BadArguments_EndWith2AndAHint) {
     }
 }
 
+TEST(Command, UnknownOptions_AreNamedWithTheOneThatIsMeant) {
+    const std::string workflow = shipped("quickstart.yaml");
+    for (const auto& [arguments, unknown, meant] :
+         std::vector<std::tuple<std::vector<std::string>, std::string, std::string>>{
+             {{"run", workflow, "x.ply", "--out", "there"}, "'--out'", "did you mean '--output'?"},
+             {{"run", workflow, "x.ply", "--units", "mm"}, "'--units'", "did you mean '--unit'?"},
+             {{"run", "--thread=2", workflow, "x.ply"}, "'--thread'", "did you mean '--threads'?"},
+             {{"cache", "info", "--jsn"}, "'--jsn'", "did you mean '--json'?"}}) {
+        const ProgramResult result = scanmill_program(arguments);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_THAT(result.err, AllOf(HasSubstr(unknown), HasSubstr(meant), HasSubstr("--help")));
+    }
+    const ProgramResult far = scanmill_program({"run", workflow, "x.ply", "--frobnicate"});
+    EXPECT_EQ(far.exit_code, 2);
+    EXPECT_THAT(far.err, AllOf(HasSubstr("'--frobnicate'"), Not(HasSubstr("did you mean"))));
+}
+
 TEST(Command, List_NamesEveryFilterInTextAndJson) {
     const ProgramResult text = scanmill_program({"list"});
     EXPECT_EQ(text.exit_code, 0);

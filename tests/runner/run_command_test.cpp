@@ -155,6 +155,21 @@ TEST(RunCommand, OneBadScanAmongGoodOnes_FailsAloneWith1) {
     EXPECT_FALSE(std::filesystem::exists(folder / "out/flat.stl"));
 }
 
+TEST(RunCommand, AScanThatIsAlsoGivenAsTheFirstInput_IsRefused) {
+    const TemporaryFolder folder;
+    folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"a/s.xyz", "--in", "scan=a/s.xyz"},
+                                               {"a/s.xyz", "--in", "scan=a/../a/s.xyz"},
+                                               {"--in", "scan=a/s.xyz,a/s.xyz"}}) {
+        std::vector<std::string> command{"run", shipped("quickstart.yaml"), "-o", "out"};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        const ProgramResult ran = scanmill_program(command, {.folder = folder.path()});
+        EXPECT_EQ(ran.exit_code, 2);
+        EXPECT_THAT(ran.err, AllOf(HasSubstr("s.xyz' is given twice"), HasSubstr("--in scan=")));
+    }
+}
+
 TEST(RunCommand, TwoScansOfOneName_AreRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
