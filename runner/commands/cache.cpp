@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
@@ -17,6 +18,27 @@ struct Options {
     bool json = false;
 };
 
+nlohmann::ordered_json uses_json(const char* key, const std::vector<CacheUse>& uses) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const CacheUse& use : uses) {
+        nlohmann::ordered_json entry;
+        entry[key] = use.name;
+        entry["bytes"] = use.bytes;
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+/// The heading, then a line for each use; empty if no file is used.
+std::string uses_text(const char* heading, const std::vector<CacheUse>& uses) {
+    std::size_t width = 0;
+    for (const CacheUse& use : uses) width = std::max(width, use.name.size());
+    std::string text;
+    for (const CacheUse& use : uses)
+        if (use.bytes > 0) text += fmt::format("  {:{}}  {}\n", use.name, width, byte_size_text(use.bytes));
+    return text.empty() ? text : fmt::format("{}\n{}", heading, text);
+}
+
 int info(const Options& options) {
     const CacheInfo info = open_cache(options.cache, {})->info();
     const std::string folder = info.folder.string();
@@ -26,10 +48,13 @@ int info(const Options& options) {
                     {"steps", info.steps},
                     {"values", info.values},
                     {"bytes", info.bytes},
-                    {"limit", info.limit}});
+                    {"limit", info.limit},
+                    {"by-filter", uses_json("filter", info.by_filter)},
+                    {"by-age", uses_json("used", info.by_age)}});
     else
-        fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n", printable_line(folder), info.steps,
-                   info.values, byte_size_text(info.bytes), byte_size_text(info.limit));
+        fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n{}{}", printable_line(folder), info.steps,
+                   info.values, byte_size_text(info.bytes), byte_size_text(info.limit),
+                   uses_text("size by filter", info.by_filter), uses_text("size by last use", info.by_age));
     return done;
 }
 

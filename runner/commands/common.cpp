@@ -91,20 +91,21 @@ Warn warning_printer() {
 }
 
 CLI::Option* add_cache_options(CLI::App& command, CacheOptions& options) {
-    command
-        .add_option_function<std::string>(
-            "--cache-limit", [&](const std::string& size) { options.limit = parse_byte_size(size); },
-            "Size limit, such as 500 MiB or 20 GiB; results used longest ago are removed first")
-        ->default_str(byte_size_text(Cache::default_limit));
+    command.add_option_function<std::string>(
+        "--cache-limit", [&](const std::string& size) { options.limit = parse_byte_size(size); },
+        fmt::format("Size limit, such as 500 MiB or 20 GiB; results used longest ago are removed first. Default: 10 % "
+                    "of the disk that holds the cache, at most {}",
+                    byte_size_text(Cache::largest_default_limit)));
     return command.add_option(
         "--cache", options.folder,
         "The cache's folder. Default: $XDG_CACHE_HOME/scanmill, or ~/.cache/scanmill if that is not set");
 }
 
 std::unique_ptr<Cache> open_cache(const CacheOptions& options, const Warn& warn) {
-    return std::make_unique<Cache>(
-        options.folder.empty() ? default_cache_folder() : std::filesystem::absolute(options.folder), options.limit,
-        warn);
+    std::filesystem::path folder =
+        options.folder.empty() ? default_cache_folder() : std::filesystem::absolute(options.folder);
+    const u64 limit = options.limit ? *options.limit : default_cache_limit(folder);
+    return std::make_unique<Cache>(std::move(folder), limit, warn);
 }
 
 }  // namespace scanmill::runner

@@ -50,7 +50,7 @@ Warn warning_printer();
 
 struct CacheOptions {
     std::string folder;
-    u64 limit = Cache::default_limit;
+    std::optional<u64> limit;  ///< in bytes; absent: default_cache_limit()
 };
 
 /// Adds `--cache` and `--cache-limit`; returns the option `--cache`.

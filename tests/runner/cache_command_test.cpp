@@ -75,7 +75,15 @@ TEST_F(CacheCommand, InfoAndClear_AreAboutTheSameFolder) {
     EXPECT_EQ(full["steps"], 2);
     EXPECT_GT(full["bytes"], 0);
     EXPECT_EQ(full["folder"], (folder_ / "home/scanmill").string());
-    EXPECT_THAT(scanmill({"cache", "info"}).out, HasSubstr("steps   2"));
+    EXPECT_THAT(scanmill({"cache", "info"}).out, AllOf(HasSubstr("steps   2"), HasSubstr("size by filter"),
+                                                       HasSubstr("voxel-thin"), HasSubstr("last day")));
+    const auto sum = [](const json& uses) {
+        std::int64_t bytes = 0;
+        for (const json& use : uses) bytes += use["bytes"].get<std::int64_t>();
+        return bytes;
+    };
+    EXPECT_EQ(sum(full["by-filter"]), full["bytes"]);
+    EXPECT_EQ(sum(full["by-age"]), full["bytes"]);
     EXPECT_EQ(scanmill({"cache", "clear"}).exit_code, 0);
     EXPECT_EQ(json::parse(scanmill({"cache", "info", "--json"}).out)["bytes"], 0);
     EXPECT_THAT(run({"--dry-run"}).out, HasSubstr("2 to compute, 0 cached"));

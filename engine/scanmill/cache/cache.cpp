@@ -8,6 +8,8 @@
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
@@ -60,6 +62,51 @@ u64 remove(const CachedFile& file) {
     return fs::remove(file.path, gone) ? file.bytes : 0;
 }
 
+std::vector<CacheUse> use_by_filter(const std::vector<CachedFile>& files) {
+    std::map<std::string, u64> bytes_by_filter;
+    std::map<std::string, std::string> filter_of_value;  // by content
+    for (const CachedFile& file : files) {
+        if (file.kind != "steps") continue;
+        std::string filter = "(other)";
+        try {
+            if (const std::optional<std::string> bytes = read_checked(file.path, "step")) {
+                const StepResult result = step_result_from(*bytes);
+                filter = result.filter.empty() ? "(scans)" : result.filter;
+                for (const ResultOutput& output : result.outputs) {
+                    const auto [found, is_new] = filter_of_value.emplace(output.content, filter);
+                    if (!is_new) found->second = std::min(found->second, filter);
+                }
+            }
+        } catch (const Error&) {  // a damaged entry is reported when it is used
+        }
+        bytes_by_filter[filter] += file.bytes;
+    }
+    for (const CachedFile& file : files) {
+        if (file.kind == "steps") continue;
+        const auto found =
+            file.kind == "values" ? filter_of_value.find(file.path.filename().string()) : filter_of_value.end();
+        bytes_by_filter[found == filter_of_value.end() ? "(other)" : found->second] += file.bytes;
+    }
+    std::vector<CacheUse> uses;
+    for (const auto& [filter, bytes] : bytes_by_filter) uses.push_back({filter, bytes});
+    std::ranges::stable_sort(uses, std::ranges::greater(), &CacheUse::bytes);
+    return uses;
+}
+
+std::vector<CacheUse> use_by_age(const std::vector<CachedFile>& files) {
+    constexpr std::int64_t day = 24 * 3600 * std::int64_t(1'000'000'000);
+    constexpr std::array<std::int64_t, 3> most_days{1, 7, 30};
+    std::vector<CacheUse> uses{{"last day", 0}, {"last 7 days", 0}, {"last 30 days", 0}, {"older", 0}};
+    timespec now;
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    for (const CachedFile& file : files) {
+        const std::int64_t age = nanoseconds(now) - file.used;
+        const auto bucket = std::ranges::find_if(most_days, [&](std::int64_t days) { return age < days * day; });
+        uses[static_cast<std::size_t>(bucket - most_days.begin())].bytes += file.bytes;
+    }
+    return uses;
+}
+
 /// Makes backup programs skip the folder: https://bford.info/cachedir/
 void mark_as_cache(const fs::path& folder) {
     const fs::path tag = folder / "CACHEDIR.TAG";
@@ -78,6 +125,16 @@ fs::path default_cache_folder() {
     throw Error("there is no folder for the cache: neither XDG_CACHE_HOME nor HOME is an absolute path")
         .hint("set one of them")
         .remedy(Remedy::choose_cache_folder);
+}
+
+u64 default_cache_limit_of(u64 capacity) { return std::min(Cache::largest_default_limit, capacity / 10); }
+
+u64 default_cache_limit(const fs::path& folder) {
+    std::error_code trouble;
+    fs::path existing = fs::absolute(folder, trouble);
+    while (!fs::exists(existing, trouble) && existing.has_relative_path()) existing = existing.parent_path();
+    const fs::space_info space = fs::space(existing, trouble);
+    return trouble || space.capacity == 0 ? Cache::largest_default_limit : default_cache_limit_of(space.capacity);
 }
 
 Cache::Cache(fs::path folder, u64 limit, OnWarning on_warning)
@@ -196,12 +253,17 @@ std::string Cache::file_hash(const fs::path& file) {
 }
 
 CacheInfo Cache::info() const {
-    CacheInfo info{folder_, 0, 0, 0, limit_};
-    for (const CachedFile& file : all_files(folder_)) {
+    CacheInfo info;
+    info.folder = folder_;
+    info.limit = limit_;
+    const std::vector<CachedFile> files = all_files(folder_);
+    for (const CachedFile& file : files) {
         info.steps += file.kind == "steps";
         info.values += file.kind == "values";
         info.bytes += file.bytes;
     }
+    info.by_filter = use_by_filter(files);
+    info.by_age = use_by_age(files);
     return info;
 }
 

@@ -17,17 +17,31 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scanmill/cache/step_result.hpp"
 #include "scanmill/cache/value_file.hpp"
 
 namespace scanmill {
 
+/// The total size of some of the cache's files.
+struct CacheUse {
+    std::string name;
+    u64 bytes = 0;
+
+    bool operator==(const CacheUse&) const = default;
+};
+
 struct CacheInfo {
     std::filesystem::path folder;
     std::size_t steps = 0, values = 0;
     u64 bytes = 0;  ///< total size of all files
     u64 limit = 0;  ///< in bytes
+    /// By the filter whose results the files hold, the largest first, then by name. A value of several filters counts
+    /// for the first name. "(scans)": scans that were read; "(other)": keys, and what no readable step refers to.
+    std::vector<CacheUse> by_filter;
+    /// By the time since the last use: less than a day, 7 days, 30 days, and more. Each file counts once.
+    std::vector<CacheUse> by_age;
 };
 
 /// Decides which values are stored.
@@ -64,13 +78,20 @@ private:
 /// $XDG_CACHE_HOME/scanmill, or else $HOME/.cache/scanmill. Throws Error if neither variable is an absolute path.
 std::filesystem::path default_cache_folder();
 
+/// The size limit of a cache in `folder` for which none is given: a tenth of the capacity of the file system that holds
+/// the folder, or will hold it, but at most Cache::largest_default_limit, also if the capacity is unknown.
+u64 default_cache_limit(const std::filesystem::path& folder);
+
+/// default_cache_limit() for a file system of `capacity` bytes.
+u64 default_cache_limit_of(u64 capacity);
+
 class Cache {
 public:
-    static constexpr u64 default_limit = u64(20) << 30;
+    static constexpr u64 largest_default_limit = u64(20) << 30;
     using OnWarning = std::function<void(std::string)>;
 
     /// Accesses no file. `limit` is the size in bytes above which evict() removes files.
-    explicit Cache(std::filesystem::path folder, u64 limit = default_limit, OnWarning on_warning = {});
+    explicit Cache(std::filesystem::path folder, u64 limit = largest_default_limit, OnWarning on_warning = {});
 
     std::optional<std::string> run_key(std::string_view plan_key) const;
     std::optional<StepResult> step(std::string_view run_key) const;
@@ -88,6 +109,7 @@ public:
     /// later change might not show in its times. Throws Error as content_hash() does.
     std::string file_hash(const std::filesystem::path& file);
 
+    /// Cost: one stat() per file, and reading the results of all steps, without their values.
     CacheInfo info() const;
     /// If the limit is exceeded, removes the least recently used files until the rest takes nine tenths of the limit.
     /// Returns the number of bytes removed. Cost: one stat() per file.

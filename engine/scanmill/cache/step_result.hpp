@@ -37,6 +37,7 @@ struct StepResult {
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
     double seconds = 0;  ///< run time of the filter
+    std::string filter{};  ///< for reports about the cache; empty: a scan was read
 
     const ResultOutput* output(std::string_view port) const;
 };
@@ -45,7 +46,7 @@ constexpr auto fields(const StepResult*) {
     return std::tuple{field("outputs", &R::outputs),   field("resolved", &R::resolved),
                       field("metrics", &R::metrics),   field("properties", &R::properties),
                       field("warnings", &R::warnings), field("doubts", &R::doubts),
-                      field("seconds", &R::seconds)};
+                      field("seconds", &R::seconds),   field("filter", &R::filter).optional()};
 }
 
 std::string to_bytes(const StepResult& result);

@@ -119,9 +119,16 @@ Json measure_schema() {
 }
 
 Json cache_info_schema() {
-    return document(
-        "scanmill cache info",
-        object({{"folder", text()}, {"steps", count()}, {"values", count()}, {"bytes", count()}, {"limit", bytes()}}));
+    return document("scanmill cache info",
+                    object({{"folder", text()},
+                            {"steps", count()},
+                            {"values", count()},
+                            {"bytes", count()},
+                            {"limit", bytes()},
+                            {"by-filter", described("The largest first; (scans) and (other) are no filters.",
+                                                    list_of(object({{"filter", text()}, {"bytes", bytes()}})))},
+                            {"by-age", described("By the time since the last use.",
+                                                 list_of(object({{"used", text()}, {"bytes", bytes()}})))}}));
 }
 
 Json cache_clear_schema() { return document("scanmill cache clear", object({{"removed", bytes()}})); }

@@ -92,7 +92,7 @@ int serve(MessageReader& reader) {
     Sender sender;
     std::unique_ptr<Cache> cache;
     if (!start.cache_folder.empty())
-        cache = std::make_unique<Cache>(start.cache_folder, Cache::default_limit,
+        cache = std::make_unique<Cache>(start.cache_folder, Cache::largest_default_limit,
                                         [&](std::string text) { sender.send({.note = std::move(text)}); });
     FilterLibrary library(plugin_folders());
     RunValues values(start.values);

@@ -389,6 +389,7 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
     result.warnings = std::move(warnings);
     result.doubts = report.node.doubts;
     result.seconds = seconds;
+    if (work) result.filter = work->step->spec.name;
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 

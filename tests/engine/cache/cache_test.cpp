@@ -50,12 +50,13 @@ StepResult some_result() {
     result.properties = {{{"points", 17, Unit::count}}};
     result.warnings = {"one", "two\n\xff"};
     result.seconds = 0.1 + 0.2;
+    result.filter = "thin";
     return result;
 }
 
 class CacheTest : public testing::Test {
 protected:
-    Cache open(u64 limit = Cache::default_limit) {
+    Cache open(u64 limit = Cache::largest_default_limit) {
         return Cache(folder_ / "cache", limit, [this](std::string text) { told_.push_back(std::move(text)); });
     }
     /// The only file of its kind.
@@ -108,6 +109,7 @@ TEST_F(CacheTest, WhatWasKept_ComesBackToAnotherProcess) {
     EXPECT_EQ(result.properties.values, some_result().properties.values);
     EXPECT_EQ(result.warnings, some_result().warnings);
     EXPECT_EQ(result.seconds, 0.1 + 0.2);
+    EXPECT_EQ(result.filter, "thin");
     EXPECT_THAT(told_, IsEmpty());
 }
 
@@ -167,6 +169,49 @@ TEST_F(CacheTest, BeyondItsLimit_WhatWasUsedLongestAgoGoes) {
     EXPECT_FALSE(cache.value(contents[2]));
     EXPECT_TRUE(cache.value(contents[3]));
     EXPECT_LE(cache.info().bytes, 135'000u);
+}
+
+TEST_F(CacheTest, Info_SharesTheBytesByFilterAndByLastUse) {
+    const EncodedValue thinned(line_of_points(1000)), scanned(line_of_points(100)), unknown(line_of_points(10));
+    const auto result_of = [](const EncodedValue& value, const std::string& filter) {
+        StepResult result;
+        result.outputs = {{"points", kind_of<PointCloud>(), value.content(), 1}};
+        result.filter = filter;
+        return result;
+    };
+    Cache cache = open();
+    for (const EncodedValue* value : {&thinned, &scanned, &unknown}) cache.keep_value(*value);
+    cache.keep_step(key, result_of(thinned, "thin"));
+    cache.keep_step(other_key, result_of(scanned, ""));
+    const auto value_file = [&](const EncodedValue& value) {
+        return folder_ / ("cache/v1/values/" + value.content().substr(0, 2) + "/" + value.content());
+    };
+    age(value_file(thinned), 48);
+    age(value_file(unknown), 24 * 100);
+    const auto size_of_file = [](const fs::path& file) { return static_cast<u64>(fs::file_size(file)); };
+    const u64 step = size_of_file(folder_ / "cache/v1/steps/aa" / key);
+    const u64 read = size_of_file(folder_ / "cache/v1/steps/bb" / other_key);
+
+    const CacheInfo info = cache.info();
+    ASSERT_EQ(info.by_filter.size(), 3u);
+    EXPECT_EQ(info.by_filter[0], (CacheUse{"thin", size_of_file(value_file(thinned)) + step}));
+    EXPECT_EQ(info.by_filter[1], (CacheUse{"(scans)", size_of_file(value_file(scanned)) + read}));
+    EXPECT_EQ(info.by_filter[2], (CacheUse{"(other)", size_of_file(value_file(unknown))}));
+    ASSERT_EQ(info.by_age.size(), 4u);
+    EXPECT_EQ(info.by_age[0].bytes, size_of_file(value_file(scanned)) + step + read);
+    EXPECT_EQ(info.by_age[1].bytes, size_of_file(value_file(thinned)));
+    EXPECT_EQ(info.by_age[2].bytes, 0u);
+    EXPECT_EQ(info.by_age[3].bytes, size_of_file(value_file(unknown)));
+}
+
+TEST(DefaultCacheLimit, IsATenthOfTheDiskAndAtMostTwentyGibibytes) {
+    EXPECT_EQ(default_cache_limit_of(100'000), 10'000u);
+    EXPECT_EQ(default_cache_limit_of(u64(200) << 30), u64(20) << 30);
+    EXPECT_EQ(default_cache_limit_of(u64(1) << 60), u64(20) << 30);
+    const TemporaryFolder folder;
+    const u64 expected = default_cache_limit_of(fs::space(folder.path()).capacity);
+    EXPECT_EQ(default_cache_limit(folder.path()), expected);
+    EXPECT_EQ(default_cache_limit(folder / "not/yet/there"), expected) << "the disk that will hold it";
 }
 
 TEST_F(CacheTest, EvictedWhileItIsRead_AValueStays) {

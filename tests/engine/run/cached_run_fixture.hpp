@@ -38,7 +38,7 @@ protected:
     }
 
     std::vector<std::string> told_;
-    Cache cache_{folder_ / "cache", Cache::default_limit,
+    Cache cache_{folder_ / "cache", Cache::largest_default_limit,
                  [this](std::string text) { told_.push_back(std::move(text)); }};
 };
 
