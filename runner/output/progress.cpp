@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
@@ -85,6 +86,7 @@ Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& pre
       terminal_(::isatty(STDERR_FILENO) != 0),
       begin_(std::chrono::steady_clock::now()) {
     expect_tasks(predictions);
+    find_lists();
 }
 
 /// Adds the tasks whose time is estimated. All steps with the same name in one workflow are one kind of task, whatever
@@ -122,6 +124,26 @@ void Progress::expect_tasks(const std::vector<NodePrediction>& predictions) {
             ++cells_left_[found->second];
         }
     }
+}
+
+void Progress::find_lists() {
+    for (std::size_t step = 0; step < graph_.nodes.size(); ++step) {
+        std::map<std::string, std::set<std::size_t>> files;  // nodes by port
+        for (const NodeInput& input : graph_.nodes[step].inputs)
+            if (!graph_.nodes[input.node].step) files[input.port].insert(input.node);
+        for (const auto& [port, nodes] : files) {
+            if (nodes.size() < 2) continue;
+            for (const std::size_t node : nodes)
+                if (list_of_.emplace(node, step).second) lists_[step].unread.insert(node);
+        }
+    }
+}
+
+void Progress::print_warnings(ListedFiles& list) {
+    for (const auto& [sentence, first_file, files] : std::exchange(list.warnings, {}))
+        print("warning: " + printable_line(files == 1
+                                               ? fmt::format("'{}': {}", first_file, sentence)
+                                               : fmt::format("'{}': {} ({} files)", first_file, sentence, files)));
 }
 
 void Progress::node_settled(std::size_t node) {
@@ -193,6 +215,17 @@ void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
     // Warnings of readers begin with the file's path. If a file is used for two inputs, it is read twice.
     if (!node.step && !read_.insert(std::string(text)).second) return;
+    const std::string file = node.leaf.file.string(), begin = "'" + file + "': ";
+    if (const auto list = list_of_.find(graph_.index(node)); list != list_of_.end() && text.starts_with(begin)) {
+        std::vector<ListedFiles::Repeated>& warnings = lists_.at(list->second).warnings;
+        const std::string sentence(text.substr(begin.size()));
+        const auto known = std::ranges::find(warnings, sentence, &ListedFiles::Repeated::sentence);
+        if (known == warnings.end())
+            warnings.push_back({sentence, file, 1});
+        else
+            ++known->files;
+        return;
+    }
     print("warning: " + printable_line(node.step ? fmt::format("{}: {}", names_.step(node), text) : std::string(text)));
 }
 
@@ -203,6 +236,11 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     time_left_.ended(index, seconds_since(begin_), report.outcome == Outcome::ok && report.origin == Origin::ran);
     board_.ended(&node);
     node_settled(index);
+    if (const auto step = list_of_.find(index); step != list_of_.end()) {
+        ListedFiles& list = lists_.at(step->second);
+        list.unread.erase(index);
+        if (list.unread.empty()) print_warnings(list);
+    }
     for (const Doubt& doubt : report.doubts)
         doubts_[index].push_back(fmt::format("{}: {}", graph_.label(node), doubt.text));
     if (quiet_ || terminal_ || report.outcome != Outcome::ok) return;
@@ -296,6 +334,7 @@ void Progress::print_beside(const std::function<void()>& print) {
 
 void Progress::finish() {
     const std::scoped_lock lock(mutex_);
+    for (auto& [step, list] : lists_) print_warnings(list);
     wipe();
 }
 

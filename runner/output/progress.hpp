@@ -71,13 +71,16 @@ public:
     void time_passed() override;
     /// Clears the terminal's lines and calls `print`, which writes other lines to stderr.
     void print_beside(const std::function<void()>& print);
-    /// Clears the terminal's lines.
+    /// Prints the remaining warnings and clears the terminal's lines.
     void finish();
 
 private:
     bool has_board() const { return terminal_ && !quiet_; }
     void expect_tasks(const std::vector<NodePrediction>& predictions);
     void node_settled(std::size_t node);
+    struct ListedFiles;
+    void find_lists();
+    void print_warnings(ListedFiles& list);
     void print_failure(const RunCell& cell, const CellReport& report);
     std::optional<double> time_left(double now);
     void print(const std::string& text);
@@ -102,7 +105,19 @@ private:
     std::set<std::string> printed_doubts_;
     std::set<std::pair<std::size_t, std::size_t>> printed_failures_;  ///< node and scan of each failure
     std::mutex mutex_;
-    std::set<std::string> read_;  ///< warnings of readers that were printed
+    std::set<std::string> read_;  ///< warnings of readers that were reported
+
+    /// The files that one step takes as a list. Their equal warnings are printed once, when all files have been read.
+    struct ListedFiles {
+        struct Repeated {
+            std::string sentence, first_file;
+            std::size_t files;
+        };
+        std::set<std::size_t> unread;  ///< nodes
+        std::vector<Repeated> warnings;
+    };
+    std::map<std::size_t, std::size_t> list_of_;  ///< by the node of a file: the step that takes the list
+    std::map<std::size_t, ListedFiles> lists_;  ///< by the node of the step
 };
 
 }  // namespace scanmill::runner

@@ -52,6 +52,18 @@ TEST_F(MergeCommand, Views_TakeTheirPosesByName) {
     EXPECT_EQ(points->columns.find("source")->number(1), 1);
 }
 
+TEST_F(MergeCommand, EqualWarningsOfSeveralViews_AreOneWithTheirNumber) {
+    folder_.write("a.xyz", "1 2 3\nnan nan nan\n");
+    folder_.write("b.xyz", "4 5 6\nnan nan nan\n");
+    folder_.write("c.xyz", "7 8 9\nnan nan nan\nnan nan nan\n");
+    const ProgramResult ran = run({"a.xyz", "b.xyz", "c.xyz", "--invalid", "drop", "-o", "out", "--no-cache"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, AllOf(ContainsRegex("1 of 2 points was dropped.*\\(2 files\\)"),
+                               HasSubstr("'c.xyz': 2 of 3 points were dropped")));
+    const std::size_t first = ran.err.find("1 of 2 points");
+    EXPECT_EQ(ran.err.find("1 of 2 points", first + 1), std::string::npos) << ran.err;
+}
+
 TEST_F(MergeCommand, WithoutPoses_KeepsThePlacesAndTellsTheFrames) {
     const ProgramResult ran = run({"left.xyz", "right.xyz", "-o", "out"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
