@@ -5,9 +5,11 @@
 #include <bit>
 #include <cmath>
 
+#include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/bounds.hpp"
+#include "scanmill/data/topology.hpp"
 #include "tessellate/grid.hpp"
 
 namespace scanmill {
@@ -323,7 +325,40 @@ private:
 
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
                         double* left) {
-    return Tessellation(patches, params, execution).mesh(left);
+    return without_equal_corners(Tessellation(patches, params, execution).mesh(left));
+}
+
+TriangleMesh without_equal_corners(const TriangleMesh& mesh) {
+    DisjointSets joined(mesh.positions.size());
+    bool is_any = false;
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (const u32 a = t[i], b = t[(i + 1) % 3]; mesh.positions[a] == mesh.positions[b]) {
+                joined.unite(a, b);
+                is_any = true;
+            }
+    if (!is_any) return mesh;
+
+    TriangleMesh result = mesh;
+    Array<Triangle> triangles;
+    Array<u32> rows;
+    for (u32 row = 0; row < mesh.triangles.size(); ++row) {
+        Triangle t = mesh.triangles[row];
+        for (u32& corner : t) corner = joined.find(corner);
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        triangles.push_back(t);
+        rows.push_back(row);
+    }
+    Array<Edge> sharp;
+    for (const auto& [a, b] : mesh.sharp_edges)
+        if (const Edge edge = make_edge(joined.find(a), joined.find(b)); edge[0] != edge[1]) sharp.push_back(edge);
+    std::ranges::sort(sharp);
+    sharp.erase(std::unique(sharp.begin(), sharp.end()), sharp.end());
+    result.triangles = std::move(triangles);
+    result.sharp_edges = std::move(sharp);
+    result.face_columns = mesh.face_columns.gather(rows);
+    result = without_unused_vertices(result);
+    return topology(mesh).closed && !topology(result).closed ? mesh : result;
 }
 
 }  // namespace scanmill

@@ -31,6 +31,9 @@ struct TessellateParams {
 /// gap, or above one of the triangles, whose grid then begins there. Where the complex has no tetrahedra beside an
 /// edge, a straight line closes the gap between the two faces.
 ///
+/// No triangle has two corners at one position. Where samples coincide, their vertices are joined, unless this would
+/// open a closed mesh.
+///
 /// Vertices: those of the mesh that are used, then edge by edge, then triangle by triangle. Columns:
 /// - Vertex `normal`: unit vector along the gradient; zero where the gradient is. On creases it is the mean of both
 ///   sides' normals, at their ends the mean of the triangles' normals.
@@ -55,5 +58,10 @@ struct TessellateParams {
 /// for parameters out of range. Cost: linear in the triangles made, about 1 us each.
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
                         double* left = nullptr);
+
+/// The mesh, with vertices at equal positions joined where edges of triangles connect them, and without the triangles
+/// that have a repeated vertex then. The first of the joined vertices keeps its columns. The mesh itself if no triangle
+/// has two corners at one position, or if a closed mesh would not stay closed. Pre: no edge columns.
+TriangleMesh without_equal_corners(const TriangleMesh& mesh);
 
 }  // namespace scanmill

@@ -21,14 +21,7 @@ void require_solid(const TriangleMesh& mesh) {
     require_finite(mesh.positions.span(), "vertices");
     const MeshTopology found = topology(mesh);
     if (!found.closed)
-        throw Error(
-            "3MF holds closed, oriented manifolds only; the mesh has {} in {}, {} in three or more triangles, {} "
-            "disagree, {} of several fans and {} a vertex twice",
-            count_text(found.boundary_edges, "boundary edge", "boundary edges"),
-            count_text(found.boundary_loops, "loop", "loops"), count_text(found.nonmanifold_edges, "edge", "edges"),
-            count_text(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
-            count_text(found.nonmanifold_vertices, "vertex", "vertices"),
-            count_text(found.degenerate_triangles, "triangle that names", "triangles that name"))
+        throw Error("3MF holds closed, oriented manifolds only; the mesh has {}", defects_text(found))
             .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
     const double volume = signed_volume(mesh.positions.span(), mesh.triangles.span());
     if (volume == 0)

@@ -4,8 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 
 namespace scanmill {
@@ -118,6 +121,20 @@ bool is_inside_out(const TriangleMesh& mesh) {
         parts += std::abs((mesh.positions[a] - apex).dot(to_b.cross(to_c)));
     }
     return -6 * volume > rounding * parts && topology(mesh).closed;
+}
+
+std::string defects_text(const MeshTopology& found) {
+    std::vector<std::string> defects;
+    const auto add = [&](std::size_t count, const char* singular, const char* plural, const std::string& rest) {
+        if (count > 0) defects.push_back(count_text(count, singular, plural) + rest);
+    };
+    add(found.boundary_edges, "boundary edge", "boundary edges",
+        " in " + count_text(found.boundary_loops, "loop", "loops"));
+    add(found.nonmanifold_edges, "edge", "edges", " in three or more triangles");
+    add(found.misoriented_edges, "edge", "edges", " between triangles of opposite orientation");
+    add(found.nonmanifold_vertices, "vertex", "vertices", " with several fans of triangles");
+    add(found.degenerate_triangles, "triangle", "triangles", " with a repeated vertex");
+    return enumerated(defects);
 }
 
 }  // namespace scanmill

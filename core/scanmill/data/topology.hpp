@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "scanmill/data/mesh.hpp"
 
@@ -41,5 +42,9 @@ double signed_volume(std::span<const Vec3> positions, std::span<const Triangle> 
 /// Whether the mesh is closed and encloses a negative volume. A volume below 1e-9 of its parts counts as 0. Cost:
 /// linear; that of topology() only if the volume is negative.
 bool is_inside_out(const TriangleMesh& mesh);
+
+/// The defects that keep a mesh from being closed, with their numbers, and no others: "3 boundary edges in 1 loop and 1
+/// triangle with a repeated vertex". Empty for a closed mesh.
+std::string defects_text(const MeshTopology& found);
 
 }  // namespace scanmill

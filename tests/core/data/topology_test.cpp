@@ -242,5 +242,12 @@ TEST(Topology, OfAShuffledMesh_IsTheSame) {
     }
 }
 
+TEST(DefectsText, NamesOnlyWhatIsThere) {
+    EXPECT_EQ(defects_text(topology(abstract_mesh(4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}))), "");
+    EXPECT_EQ(defects_text(topology(abstract_mesh(3, {{0, 1, 2}}))), "3 boundary edges in 1 loop");
+    EXPECT_EQ(defects_text(topology(abstract_mesh(4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 0, 1}}))),
+              "1 triangle with a repeated vertex");
+}
+
 }  // namespace
 }  // namespace scanmill::test

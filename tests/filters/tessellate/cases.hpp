@@ -17,6 +17,14 @@ inline TriangleMesh tessellated(const PatchComplex& patches, u32 subdivision, st
     return tessellated(patches, TessellateParams{subdivision, max_error});
 }
 
+inline void expect_no_equal_corners(const TriangleMesh& mesh) {
+    for (const auto& [a, b, c] : mesh.triangles) {
+        EXPECT_NE(mesh.positions[a], mesh.positions[b]);
+        EXPECT_NE(mesh.positions[b], mesh.positions[c]);
+        EXPECT_NE(mesh.positions[c], mesh.positions[a]);
+    }
+}
+
 /// Closed, with the topology of `mesh`, every directed edge once against its opposite, no two vertices at one position.
 inline void expect_closed(const TriangleMesh& result, const TriangleMesh& mesh) {
     const MeshTopology found = topology(result), wanted = topology(mesh);
@@ -30,6 +38,7 @@ inline void expect_closed(const TriangleMesh& result, const TriangleMesh& mesh) 
     for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a}));
     std::set<std::array<double, 3>> places;
     for (const Vec3& p : result.positions) EXPECT_TRUE(places.insert({p.x(), p.y(), p.z()}).second);
+    expect_no_equal_corners(result);
 }
 
 }  // namespace scanmill::test

@@ -264,6 +264,7 @@ TEST(Tessellate, AnOpenMesh_HasItsBoundary) {
             EXPECT_EQ(found.euler, topology(mesh).euler);
             EXPECT_EQ(found.boundary_loops, 1u);
             EXPECT_EQ(found.nonmanifold_vertices + found.nonmanifold_edges + found.misoriented_edges, 0u);
+            expect_no_equal_corners(result);
         }
     }
 }
@@ -274,6 +275,45 @@ TEST(Tessellate, AFlatMesh_StaysFlat) {
     const TriangleMesh result = tessellated(patches, 4);
     for (const Vec3& p : result.positions) EXPECT_NEAR(p.z(), 0, 1e-15);
     EXPECT_NEAR(area(result), 1, 1e-12);
+    expect_no_equal_corners(result);
+}
+
+/// An octahedron whose upper vertex, 4, is split: an edge without length leads to vertex 6.
+TriangleMesh split_octahedron() {
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(1, 0, 0), Vec3(0, 1, 0),  Vec3(-1, 0, 0), Vec3(0, -1, 0),
+                      Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 0, 1)};
+    mesh.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 6}, {3, 0, 6}, {0, 4, 6},
+                      {4, 2, 6}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
+    mesh.face_columns.add(Column("patch", 1, Buffer<u32>(Array<u32>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9})));
+    mesh.vertex_columns.add(Column("row", 1, Buffer<u32>(Array<u32>{0, 1, 2, 3, 4, 5, 6})));
+    mesh.sharp_edges = {{0, 4}, {0, 6}, {4, 6}};
+    return mesh;
+}
+
+TEST(Tessellate, EqualCorners_AreJoinedAndTheMeshStaysClosed) {
+    const TriangleMesh split = split_octahedron();
+    ASSERT_TRUE(topology(split).closed);
+    const TriangleMesh joined = without_equal_corners(split);
+    EXPECT_TRUE(topology(joined).closed);
+    EXPECT_EQ(topology(joined).euler, 2);
+    EXPECT_EQ(joined.positions.size(), 6u);
+    EXPECT_EQ(joined.vertex_columns.find("row")->rows(), 6u);
+    expect_no_equal_corners(joined);
+    std::vector<double> patches;
+    for (u32 row = 0; row < joined.triangles.size(); ++row)
+        patches.push_back(joined.face_columns.find("patch")->number(row));
+    EXPECT_THAT(patches, testing::ElementsAre(0, 1, 2, 3, 6, 7, 8, 9));
+    ASSERT_EQ(joined.sharp_edges.size(), 1u);
+    EXPECT_EQ(joined.sharp_edges[0], (Edge{0, 4}));
+    const TriangleMesh again = without_equal_corners(joined);
+    EXPECT_TRUE(std::ranges::equal(again.triangles, joined.triangles));
+}
+
+TEST(Tessellate, EqualPositionsWithoutAnEdgeBetweenThem_StayApart) {
+    const TriangleMesh apart =
+        soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 0, 1}, {0, 1, 1}}, {{0, 1, 2}, {3, 4, 5}});
+    EXPECT_EQ(without_equal_corners(apart).positions.size(), 6u);
 }
 
 TEST(Tessellate, ATorus_DoesNotIntersectItself) {

@@ -69,13 +69,10 @@ void warn_opened(const TriangleMesh& mesh, const Buffer<Triangle>& triangles, co
     const MeshTopology found = topology(in_file);
     if (found.closed) return;
     std::string sentence = fmt::format(
-        "the mesh is closed, but the {0} file is not: {0} joins {1} at equal positions, and the file then has {2}, {3} "
-        "in three or more triangles, {4} between triangles of opposite orientation and {5} with several fans; PLY "
+        "the mesh is closed, but the {0} file is not: {0} joins {1} at equal positions, and the file then has {2}; PLY "
         "keeps the mesh closed",
         format, count_text(joined.rounded + joined.equal, "vertex", "vertices"),
-        count_text(found.boundary_edges, "boundary edge", "boundary edges"),
-        count_text(found.nonmanifold_edges, "edge", "edges"), count_text(found.misoriented_edges, "edge", "edges"),
-        count_text(found.nonmanifold_vertices, "vertex", "vertices"));
+        found.triangles == 0 ? std::string("no triangles") : defects_text(found));
     options.on_opened ? options.on_opened(std::move(sentence)) : warn(options.on_warning, "{}", sentence);
 }
 
