@@ -192,6 +192,9 @@ MergeResult merge(Inputs given, const MergeParams& params, Context& context) {
     PointCloud all = placed_points(inputs, params.poses);
     all.columns = merging::merged_columns(inputs, params.poses, context);
     const std::span<const u32> source = all.columns.find("source")->values<u32>();
+    if (std::string doubt = merging::frames_doubt(all.positions.span(), source, context); !doubt.empty())
+        context.doubt(doubt + (params.poses.empty() ? "; give the poses of the views, or align the files first"
+                                                    : "; check the poses and their unit"));
 
     MergeResult result;
     result.kept = merging::without_overlap(all.positions.span(), source, preference, params.within.value(), context);

@@ -79,7 +79,7 @@ struct MergeResult {
 /// Deterministic: one thread does the work, so the bytes are the same for any number of threads. Cost: O(n) time while
 /// `within` is a few spacings. With a larger `within`, each point along the border of an overlap takes (within /
 /// spacing)² time. Memory: beside the result about its size once more, and about 50 bytes per point if `within` > 0.
-/// Metrics: `points`, `dropped`.
+/// Metrics: `points`, `dropped`. Doubt: inputs whose surfaces cross others where they meet, see frames_doubt().
 MergeResult merge(std::span<const std::shared_ptr<const PointCloud>> inputs, const MergeParams& params,
                   Context& context);
 

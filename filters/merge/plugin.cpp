@@ -15,7 +15,7 @@ struct PosedMergeParams : MergeParams {
 
 SCANMILL_FILTER() {
     using P = PosedMergeParams;
-    return Declare<P>("merge", 2)
+    return Declare<P>("merge", 3)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
         .ties("If points overlap and have equal preference, the point of the earlier input is kept.")

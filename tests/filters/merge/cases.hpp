@@ -11,6 +11,7 @@ using Clouds = std::vector<PointCloud>;
 struct Merged : MergeResult {
     std::vector<std::string> warnings;
     Metrics metrics;
+    std::vector<Doubt> doubts;
 };
 
 inline Merged merged(const Clouds& clouds, const MergeParams& params = {}, unsigned threads = 1) {
@@ -20,7 +21,7 @@ inline Merged merged(const Clouds& clouds, const MergeParams& params = {}, unsig
     options.threads = threads;
     Context context(options);
     MergeResult result = merge(inputs, params, context);
-    return {std::move(result), context.warnings(), context.metrics()};
+    return {std::move(result), context.warnings(), context.metrics(), context.doubts()};
 }
 
 inline MergeParams within(double distance, MergeParams::Prefer prefer = MergeParams::Prefer::none) {

@@ -79,6 +79,7 @@ protected:
 TEST_F(MergeBunny, TenViewsWithTheirPoses_LieOnTheModel) {
     const Merged all = merged(clouds_, posed(poses_));
     EXPECT_EQ(all.points.size(), 362'272u);
+    EXPECT_THAT(all.doubts, testing::IsEmpty());
     // In metres; the model is 0.25 m long and its triangles' edges are a millimetre.
     EXPECT_THAT(distances(all.points, 0.5), testing::Each(testing::Lt(0.1e-3)));
     EXPECT_THAT(distances(all.points, 0.95), testing::Each(testing::Lt(0.5e-3)));
@@ -88,6 +89,12 @@ TEST_F(MergeBunny, QuaternionsReadTheUsualWay_PutMostViewsOffTheModel) {
     for (RigidTransform& pose : poses_) pose.rotation.transposeInPlace();
     const std::vector<double> medians = distances(merged(clouds_, posed(poses_)).points, 0.5);
     EXPECT_GE(std::ranges::count_if(medians, [](double median) { return median > 3e-3; }), 8);
+}
+
+TEST_F(MergeBunny, WithoutTheirPoses_TheViewsAreDoubtful) {
+    const Merged all = merged(clouds_);
+    ASSERT_EQ(all.doubts.size(), 1u);
+    EXPECT_THAT(all.doubts[0].text, testing::HasSubstr("do not lie in one frame"));
 }
 
 TEST_F(MergeBunny, WithinASpacing_LessThanHalfIsKeptAndTheFirstViewWhole) {
