@@ -151,7 +151,8 @@ TEST(YamlDocument, TabsInTheIndentation_AreNamed) {
     for (const auto& [text, line, column] :
          {std::tuple("a:\n\tb: 1\n", 2, 1), std::tuple("a:\n  - b: 1\n\t  c: 2\n", 3, 1),
           std::tuple("a:\n  - b: 1\n  \tc: 2\n", 3, 3), std::tuple("steps:\n\t- b:\n", 2, 1),
-          std::tuple("steps:\n\t- b:\n\t- c:\n", 2, 1), std::tuple("- a: 1\n-\tb: 2\n", 2, 2)}) {
+          std::tuple("steps:\n\t- b:\n\t- c:\n", 2, 1), std::tuple("- a: 1\n-\tb: 2\n", 2, 2),
+          std::tuple("a:\n  - b:\n\tc: 1\n", 3, 1)}) {
         const Parsed parsed = parse(text);
         ASSERT_EQ(parsed.findings.size(), 1u) << text;
         EXPECT_EQ(parsed.findings[0].position, (Position{line, column})) << text;
