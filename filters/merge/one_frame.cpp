@@ -75,8 +75,9 @@ View view_of(u32 number, std::span<const Vec3> positions, std::size_t samples) {
         for (std::size_t i = 0; i < most_points; ++i) some.push_back(positions[random.index(positions.size())]);
         positions = some;
     }
-    View view{number, PointTree(positions), point_spacing(positions), bounding_box(positions), {}};
-    const std::span<const Vec3> distinct = view.tree.positions();
+    const PointTree tree(positions);
+    const std::span<const Vec3> distinct = tree.positions();
+    View view{number, tree, point_spacing(distinct), bounding_box(distinct), {}};
     NeighbourBuffer buffer;
     for (std::size_t i = 0; i < std::min(samples, distinct.size()); ++i) {
         const auto index = static_cast<u32>(samples < distinct.size() ? random.index(distinct.size()) : i);

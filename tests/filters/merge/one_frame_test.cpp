@@ -24,11 +24,11 @@ PointCloud cloud_of(Array<Vec3> positions) {
     return cloud;
 }
 
-/// 4,000 random points on a body without symmetry, seen from a direction, with noise.
-PointCloud view_of_body(const Vec3& direction, u64 seed, double noise = 0.003) {
+/// Random points on a body without symmetry, seen from a direction, with noise.
+PointCloud view_of_body(const Vec3& direction, u64 seed, double noise = 0.003, std::size_t points = 4000) {
     Random random(seed);
     Array<Vec3> positions;
-    while (positions.size() < 4000) {
+    while (positions.size() < points) {
         const Vec3 d = Vec3(random.normal(), random.normal(), random.normal()).normalized();
         if (d.dot(direction) < 0.2) continue;
         const double radius = 1 + 0.25 * std::sin(4 * d.x() + 1) * std::cos(3 * d.y()) + 0.15 * std::sin(5 * d.z()) +
@@ -85,6 +85,13 @@ TEST(MergeOneFrame, ViewsInTheirOwnFrames_AreDoubtfulWithTheWorstPairs) {
     const Merged again = merged(views, {}, 2);
     ASSERT_EQ(again.doubts.size(), 1u);
     EXPECT_EQ(again.doubts[0].text, found.doubts[0].text) << "for any number of threads";
+}
+
+TEST(MergeOneFrame, ViewsOfManyPoints_AreJudgedAlike) {
+    Clouds views;
+    for (const Vec3& direction : six_directions) views.push_back(view_of_body(direction, views.size(), 0.003, 12'000));
+    EXPECT_THAT(merged(views).doubts, IsEmpty());
+    EXPECT_EQ(merged(in_their_own_frames(views)).doubts.size(), 1u);
 }
 
 TEST(MergeOneFrame, OneViewThatIsTurned_IsTheOneThatIsCounted) {
