@@ -131,6 +131,7 @@ struct RunGraph {
     std::vector<RunNode> nodes;
     std::vector<RunCell> cells;
     std::uint64_t seed = 0;
+    std::filesystem::path output_folder;  ///< absolute, without links
 
     /// The step of a node; nullptr for a leaf.
     const PlannedStep* step(const RunNode& node) const {

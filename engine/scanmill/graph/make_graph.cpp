@@ -130,6 +130,7 @@ public:
           base_(key_base(parts.front().request.seed)),
           output_files_(parts.front().request.output_folder) {
         graph_.seed = parts.front().request.seed;
+        graph_.output_folder = output_files_.folder();
     }
 
     RunGraph build() {

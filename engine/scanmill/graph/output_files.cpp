@@ -56,18 +56,24 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
         throw Error("the output '{}' is an existing folder", file.string())
             .hint("remove it, or choose another output folder")
             .remedy(Remedy::choose_output_folder);
-    const fs::path folder = real_path(file.parent_path());
+    const fs::path failed = failed_of(folder_, file);
+    names_.add(failed.lexically_relative(folder_).string(), content, writer + ", if it fails,", values);
+    for (const fs::path& written : {file, previous_of(file), failed}) require_free(written);
+    return file;
+}
+
+/// Throws Error if the file is an input, or if a symbolic link leads it out of the output folder.
+void OutputFiles::require_free(const fs::path& file) {
+    fs::path& folder = real_folders_[file.parent_path()];
+    if (folder.empty()) folder = real_path(file.parent_path());
     if (!lies_below(folder, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), folder.string())
             .hint("remove the symbolic link that leads out of the output folder");
-    for (const fs::path& replaced : {file, previous_of(file)}) {
-        const Identity existing = identity(replaced);
-        if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / replaced.filename()))
-            throw Error("'{}' is an input; an output must not replace it", replaced.string())
-                .hint("choose another output folder")
-                .remedy(Remedy::choose_output_folder);
-    }
-    return file;
+    const Identity existing = identity(file);
+    if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / file.filename()))
+        throw Error("'{}' is an input; an output must not replace it", file.string())
+            .hint("choose another output folder")
+            .remedy(Remedy::choose_output_folder);
 }
 
 /// {0, 0} for a file that does not exist.
@@ -78,6 +84,25 @@ OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
 }
 
 fs::path previous_of(const fs::path& file) { return file.string() + ".previous"; }
+
+fs::path failed_folder(const fs::path& folder) { return folder / "failed"; }
+
+fs::path failed_of(const fs::path& folder, const fs::path& file) {
+    return failed_folder(folder) / file.lexically_relative(folder);
+}
+
+void remove_failed(const fs::path& folder, const fs::path& file) {
+    const fs::path failed = failed_of(folder, file);
+    std::error_code ignored;
+    for (const fs::path& each : {failed, description_of(failed)})
+        if (const fs::file_status status = fs::symlink_status(each, ignored);
+            fs::is_regular_file(status) || fs::is_symlink(status))
+            fs::remove(each, ignored);
+    for (fs::path part = failed.parent_path(); part != folder; part = part.parent_path()) {
+        if (!fs::is_directory(fs::symlink_status(part, ignored))) continue;
+        fs::remove(part, ignored);  // fails if the folder is not empty
+    }
+}
 
 bool move_aside(const fs::path& file) {
     const auto move = [](const fs::path& from, const fs::path& to) {
