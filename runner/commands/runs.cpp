@@ -168,6 +168,11 @@ int show_run(Folder& folder, std::int64_t id, bool json) {
                    printable(failure.second));
     for (const CellRecord& cell : run.cells)
         for (const OutputRecord& output : cell.outputs)
+            if (!output.evidence.empty())
+                fmt::print("\n{} [{}]: the failed result was written to '{}'\n", printable_line(cell.scan),
+                           printable_line(cell.variant), printable_line(output.evidence));
+    for (const CellRecord& cell : run.cells)
+        for (const OutputRecord& output : cell.outputs)
             if (!output.moved_to.empty())
                 fmt::print("\n{} [{}]: the output of an earlier run was moved to '{}'\n", printable_line(cell.scan),
                            printable_line(cell.variant), printable_line(output.moved_to));

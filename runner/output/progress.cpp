@@ -311,6 +311,8 @@ void Progress::print_failure(const RunCell& cell, const CellReport& report) {
         print(error_text(error));
     }
     for (const OutputReport& output : report.outputs) {
+        if (!output.evidence.empty())
+            print(printable_line(fmt::format("the failed result was written to '{}'", output.evidence.string())));
         if (!output.moved_to.empty())
             print(printable_line(
                 fmt::format("warning: the file of an earlier run was moved to '{}'", output.moved_to.string())));

@@ -11,6 +11,7 @@
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/graph/output_files.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
 
@@ -44,7 +45,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
                 shown.set(metric.name, found->value, found->unit);
     }
     for (const OutputReport& output : report.cells[cell].outputs)
-        if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::ok) {
+        if (output.kind == kind_of<TriangleMesh>() && (output.outcome == Outcome::ok || !output.evidence.empty())) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
                 if (const Metric* property = output.properties.find(name))
                     shown.set(name, property->value, property->unit);
@@ -171,12 +172,13 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
     table.may_cut("files");
     std::size_t doubtful = 0, failed = 0;
     std::set<std::size_t> unreadable;          // nodes that read a file
-    std::set<std::filesystem::path> moved_to, not_moved;  // variants may share a file
+    std::set<std::filesystem::path> evidence, moved_to, not_moved;  // variants may share a file
     for (const CellReport& done : report.cells) {
         doubtful += done.outcome == Outcome::doubtful;
         failed += done.outcome == Outcome::failed;
         if (const std::optional<std::size_t> file = unreadable_file(graph, done)) unreadable.insert(*file);
         for (const OutputReport& output : done.outputs) {
+            if (!output.evidence.empty()) evidence.insert(output.evidence);
             if (!output.moved_to.empty()) moved_to.insert(output.moved_to);
             if (!output.not_moved.empty()) not_moved.insert(output.file);
         }
@@ -209,6 +211,10 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
             : "";
     if (failed > 0)
         text += fmt::format("{} of {} failed{}; the reasons are on stderr\n", failed, graph.cells.size(), broken);
+    if (!evidence.empty())
+        text +=
+            fmt::format("{} written to '{}'\n", count_text(evidence.size(), "failed result was", "failed results were"),
+                        shown_path(failed_folder(graph.output_folder)));
     if (!moved_to.empty())
         text += fmt::format("{} moved to *.previous, because the cells failed now\n",
                             count_text(moved_to.size(), "file of an earlier run was", "files of an earlier run were"));

@@ -44,8 +44,16 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
 }
 
 OutputRecord output_record(const OutputReport& report) {
-    return {report.file.string(), std::string(name_of(report.kind)), report.outcome,   report.properties, report.sha256,
-            report.bytes,         report.moved_to.string(),          report.not_moved, report.warnings};
+    return {report.file.string(),
+            std::string(name_of(report.kind)),
+            report.outcome,
+            report.properties,
+            report.sha256,
+            report.bytes,
+            report.moved_to.string(),
+            report.not_moved,
+            report.warnings,
+            report.evidence.string()};
 }
 
 CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report) {

@@ -80,6 +80,7 @@ struct OutputRecord {
     u64 bytes = 0;
     std::string moved_to{}, not_moved{};
     std::vector<std::string> warnings{};
+    std::string evidence{};
 };
 constexpr auto fields(const OutputRecord*) {
     using R = OutputRecord;
@@ -93,7 +94,10 @@ constexpr auto fields(const OutputRecord*) {
         field("bytes", &R::bytes, "Size of the written file.").optional(),
         field("moved-to", &R::moved_to, "New path of an earlier run's file, moved because the cell failed in this run.")
             .optional(),
-        field("not-moved", &R::not_moved, "Why the file of an earlier run could not be moved.").optional()};
+        field("not-moved", &R::not_moved, "Why the file of an earlier run could not be moved.").optional(),
+        field("evidence", &R::evidence,
+              "Path of the whole output below `failed/`, because its cell does not meet an expectation.")
+            .optional()};
 }
 
 /// The costs of one pass over a cell. All steps of the cell ran in this pass.

@@ -6,6 +6,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/graph/output_files.hpp"
+#include "scanmill/worker/file_description.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
@@ -21,11 +22,12 @@ std::string frame_of(const RunGraph& graph, std::size_t index) {
                        step->position.column);
 }
 
-Cells::Cells(const RunGraph& graph, const Limits& limits, RunReport& report, std::function<void(std::size_t)> on_end)
+Cells::Cells(const RunGraph& graph, const Limits& limits, RunReport& report, OnEnd on_end, OnNodeWarning on_warning)
     : graph_(graph),
       limits_(limits),
       report_(report),
       on_end_(std::move(on_end)),
+      on_warning_(std::move(on_warning)),
       cells_of_node_(graph.nodes.size()),
       states_(graph.cells.size()) {
     report_.cells.resize(graph.cells.size());
@@ -36,7 +38,7 @@ Cells::Cells(const RunGraph& graph, const Limits& limits, RunReport& report, std
         for (const std::size_t node : cell.nodes) cells_of_node_[node].push_back(index);
         for (const RunOutput& output : cell.outputs) {
             const auto [found, is_new] = indices.emplace(output.file, files_.size());
-            if (is_new) files_.push_back({{output.node, output.port}, output.file, {}, {}, {}});
+            if (is_new) files_.push_back({{output.node, output.port}, output.file, {}, {}, {}, 0, {}, 0});
             files_[found->second].cells.push_back(index);
             states_[index].files.push_back(found->second);
         }
@@ -70,8 +72,51 @@ void Cells::charge(const std::vector<std::size_t>& cells, double seconds) {
 
 void Cells::task_ended(const std::vector<std::size_t>& cells, double seconds) {
     charge(cells, seconds);
-    for (const std::size_t cell : cells)
-        if (--states_[cell].tasks_left == 0) end(cell);
+    for (const std::size_t cell : cells) {
+        if (--states_[cell].tasks_left > 0) continue;
+        if (must_wait(cell))
+            waiting_.push_back(cell);
+        else
+            end(cell);
+        for (std::size_t i = 0; i < waiting_.size();) {
+            const std::size_t other = waiting_[i];
+            if (must_wait(other)) {
+                ++i;
+                continue;
+            }
+            waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+            end(other);
+        }
+    }
+}
+
+bool Cells::is_unmet(std::size_t cell) const {
+    return std::ranges::any_of(graph_.cells[cell].nodes, [&](std::size_t node) {
+        return report_.nodes[node].failure.cause == Cause::expectation;
+    });
+}
+
+bool Cells::are_unmet(const std::vector<std::size_t>& cells) const {
+    return std::ranges::all_of(cells, [&](std::size_t cell) { return is_unmet(cell); });
+}
+
+/// Whether the cell shares a written output with a cell that is not done, so that it is open whether the output belongs
+/// into failed_folder().
+bool Cells::must_wait(std::size_t cell) const {
+    if (!is_unmet(cell)) return false;
+    return std::ranges::any_of(states_[cell].files, [&](std::size_t file) {
+        return files_[file].report.outcome == Outcome::ok &&
+               std::ranges::any_of(files_[file].cells, [&](std::size_t other) {
+                   return states_[other].tasks_left > 0 && !is_unmet(other);
+               });
+    });
+}
+
+void Cells::warn_of_failed_folder(std::size_t node, const std::string& reason) {
+    if (has_warned_) return;
+    has_warned_ = true;
+    on_warning_(node, fmt::format("outputs of failed cells cannot be written to '{}': {}",
+                                  failed_folder(graph_.output_folder).string(), reason));
 }
 
 void Cells::end_remaining() {
@@ -91,6 +136,18 @@ void set_aside(OutputReport& output) {
 }
 
 }  // namespace
+
+/// Moves an output that was written before an expectation was not met. If it cannot be moved, it stays, with a warning.
+void Cells::move_to_failed(FileToWrite& file) {
+    const std::filesystem::path evidence = failed_of(graph_.output_folder, file.file);
+    try {
+        move_with_description(file.file, evidence, unmet_by(file.cells, graph_, report_.nodes));
+    } catch (const Error& error) {
+        return warn_of_failed_folder(file.source.first, error.sentence());
+    }
+    file.report.outcome = Outcome::failed;
+    file.report.evidence = evidence;
+}
 
 void Cells::end(std::size_t index) {
     const RunCell& cell = graph_.cells[index];
@@ -114,10 +171,16 @@ void Cells::end(std::size_t index) {
     }
     if (!report.failure && states_[index].is_out_of_time && !is_done) report.failure = out_of_time(index);
     report.doubts = doubts_about(cell.outputs, cell.nodes, graph_, report_.nodes);
+    const bool is_unmet_now = is_unmet(index);
     for (const std::size_t file : states_[index].files) {
         OutputReport& output = files_[file].report;
         output.file = files_[file].file;
+        if (is_unmet_now && output.outcome == Outcome::ok && are_unmet(files_[file].cells))
+            move_to_failed(files_[file]);
         if (report.failure && output.outcome != Outcome::ok) set_aside(output);
+        // What an earlier run left in failed_folder() is out of date.
+        if (is_unmet_now ? output.evidence.empty() : !report.failure && output.outcome == Outcome::ok)
+            remove_failed(graph_.output_folder, output.file);
         for (const std::string& doubt : output.doubts)
             report.doubts.push_back(fmt::format("'{}': {}", output.file.string(), doubt));
         report.outputs.push_back(output);

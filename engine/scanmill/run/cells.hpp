@@ -24,6 +24,7 @@ struct FileToWrite {
     OutputReport report;
     Failure failure;
     double seconds = 0;
+    std::filesystem::path evidence;  ///< failed_of() the file, if it is written there; otherwise empty
     unsigned failures = 0;  ///< number of attempts that ended by a crash or a limit
 };
 
@@ -32,9 +33,12 @@ std::string frame_of(const RunGraph& graph, std::size_t node);
 
 class Cells {
 public:
+    using OnEnd = std::function<void(std::size_t cell)>;
+    using OnNodeWarning = std::function<void(std::size_t node, const std::string& text)>;
+
     /// `graph`, `limits` and `report` must outlive this object. `on_end` is called with the index of a cell when the
     /// cell's report is complete.
-    Cells(const RunGraph& graph, const Limits& limits, RunReport& report, std::function<void(std::size_t)> on_end);
+    Cells(const RunGraph& graph, const Limits& limits, RunReport& report, OnEnd on_end, OnNodeWarning on_warning);
 
     std::vector<FileToWrite>& files() { return files_; }
     const std::vector<FileToWrite>& files() const { return files_; }
@@ -47,7 +51,13 @@ public:
     void limit_time(const std::vector<std::size_t>& cells, Job& job) const;
     /// Adds seconds to the used time of the cells.
     void charge(const std::vector<std::size_t>& cells, double seconds);
-    /// Counts the end of a task, which took `seconds`, for these cells. Ends the cells that have no unfinished task.
+    /// Whether all these cells fail because a node does not meet an expectation. Their outputs belong into
+    /// failed_folder().
+    bool are_unmet(const std::vector<std::size_t>& cells) const;
+    /// Warns that an output of the node could not be written to failed_folder(). Only the first call has an effect.
+    void warn_of_failed_folder(std::size_t node, const std::string& reason);
+    /// Counts the end of a task, which took `seconds`, for these cells. Ends the cells that have no unfinished task. A
+    /// cell that may have to move an output waits for the cells that share the output.
     void task_ended(const std::vector<std::size_t>& cells, double seconds);
     void end_remaining();
 
@@ -59,16 +69,22 @@ private:
         bool is_out_of_time = false;
     };
 
+    bool is_unmet(std::size_t cell) const;
+    bool must_wait(std::size_t cell) const;
+    void move_to_failed(FileToWrite& file);
     void end(std::size_t cell);
     Failure out_of_time(std::size_t cell) const;
 
     const RunGraph& graph_;
     const Limits& limits_;
     RunReport& report_;
-    std::function<void(std::size_t)> on_end_;
+    OnEnd on_end_;
+    OnNodeWarning on_warning_;
+    bool has_warned_ = false;  // warn_of_failed_folder() was called
     std::vector<FileToWrite> files_;
     std::vector<std::vector<std::size_t>> cells_of_node_;
     std::vector<State> states_;
+    std::vector<std::size_t> waiting_;  // cells for which must_wait() was true at their last task
 };
 
 }  // namespace scanmill

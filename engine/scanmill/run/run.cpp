@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/graph/output_files.hpp"
 #include "scanmill/run/cells.hpp"
 #include "scanmill/worker/file_description.hpp"
 
@@ -36,8 +37,12 @@ public:
           settings_(settings),
           observers_(observers),
           prediction_(settings.prediction.empty() ? predict(graph, settings.cache) : settings.prediction),
-          cells_(graph, settings.limits, report_,
-                 [&](std::size_t cell) { notify(&RunObserver::cell_ended, graph_.cells[cell], report_.cells[cell]); }),
+          cells_(
+              graph, settings.limits, report_,
+              [&](std::size_t cell) { notify(&RunObserver::cell_ended, graph_.cells[cell], report_.cells[cell]); },
+              [&](std::size_t node, const std::string& text) {
+                  notify(&RunObserver::node_warning, graph_.nodes[node], text);
+              }),
           nodes_(graph.nodes.size()),
           running_(workers.size()) {
         report_.nodes.resize(graph.nodes.size());
@@ -77,7 +82,14 @@ private:
         std::size_t write = 0;  ///< 0: run the node; otherwise 1 + index into Cells::files()
         auto operator<=>(const Task&) const = default;
     };
-    enum class State { pending, running, done, failed, skipped };
+    enum class State {
+        pending,
+        running,
+        done,
+        unmet,  ///< failed by an expectation: its outputs are written, but no step takes them
+        failed,
+        skipped
+    };
     struct NodeState {
         State state = State::pending;
         bool is_counted = false;  ///< Cells::task_ended() was called for the node
@@ -163,7 +175,8 @@ private:
             for (const NodeInput& input : graph_.nodes[task.node].inputs) prerequisites.push_back(input.node);
         for (const std::size_t index : prerequisites) {
             NodeState& from = nodes_[index];
-            if (from.state == State::failed || from.state == State::skipped) return skip(task);
+            if (from.state == State::unmet && task.write > 0) continue;
+            if (from.state >= State::unmet) return skip(task);
             if (from.state != State::done) {
                 from.waiting.push_back(task);
                 return;
@@ -234,6 +247,7 @@ private:
     void begin(const Task& task) {
         const std::size_t worker = idle_.back();
         idle_.pop_back();
+        if (task.write > 0) choose_folder(file_of(task));
         if (!workers_.start(worker, job(task))) {
             ready_.insert(task);  // another worker will take it
             return;
@@ -249,6 +263,12 @@ private:
             notify(&RunObserver::output_started, cell, *std::ranges::find(cell.outputs, file.file, &RunOutput::file),
                    worker);
         }
+    }
+
+    /// Decides whether the file is written to failed_folder(). If a cell fails later, Cells moves the file.
+    void choose_folder(FileToWrite& file) const {
+        file.evidence.clear();
+        if (cells_.are_unmet(file.cells)) file.evidence = failed_of(graph_.output_folder, file.file);
     }
 
     // Making the job that tells a worker how to do a task.
@@ -285,16 +305,18 @@ private:
     WriteWork writing(const FileToWrite& file) const {
         const auto& [node, port] = file.source;
         WriteWork work;
-        work.file = file.file;
-        work.made_how = made_how(graph_, file.cells, {file.file, node, port}, report_.nodes);
+        const bool is_evidence = !file.evidence.empty();
+        work.file = is_evidence ? file.evidence : file.file;
+        work.made_how = made_how(graph_, file.cells, {file.file, node, port}, report_.nodes, is_evidence);
         work.added_columns = added_columns(graph_, node);
         work.value = input_from(file.source, "");
         const PlannedStep* step = graph_.step(graph_.nodes[node]);
         if (!step || step->expectations.empty() || step->spec.outputs.front().name != port) return work;
         work.properties = report_.nodes[node].properties;
-        work.must_be_closed = std::ranges::any_of(step->expectations, [](const PlannedExpectation& expectation) {
-            return expectation.name == "closed" && expectation.low == ParameterValue(ParameterScalar(true));
-        });
+        work.must_be_closed =
+            !is_evidence && std::ranges::any_of(step->expectations, [](const PlannedExpectation& expectation) {
+                return expectation.name == "closed" && expectation.low == ParameterValue(ParameterScalar(true));
+            });
         return work;
     }
 
@@ -383,7 +405,8 @@ private:
             report.origin = Origin::cached;
             report.outcome = done.outcome;
             report.failure = std::move(done.node.failure);
-            if (done.outcome == Outcome::ok) report.properties = std::move(done.node.properties);
+            if (done.outcome == Outcome::ok || report.failure.cause == Cause::expectation)
+                report.properties = std::move(done.node.properties);
         }
         if (predicted.will_run) {
             report.why = predicted.why;
@@ -398,7 +421,9 @@ private:
                 predicted.cached = std::move(done.result);
             }
         }
-        state.state = report.outcome == Outcome::ok ? State::done : State::failed;
+        state.state = report.outcome == Outcome::ok                ? State::done
+                      : report.failure.cause == Cause::expectation ? State::unmet
+                                                                   : State::failed;
         notify(&RunObserver::node_ended, node, report);
         release(used);
         end_task({index});
@@ -410,7 +435,13 @@ private:
         file.seconds = done.node.effort.seconds;
         file.report = std::move(done.output);
         file.report.file = file.file;  // the report is empty if the worker process ended
-        if (file.failure) file.report.outcome = Outcome::failed;
+        if (file.failure || !file.evidence.empty()) file.report.outcome = Outcome::failed;
+        if (!file.evidence.empty() && file.failure) {
+            cells_.warn_of_failed_folder(file.source.first, file.failure.error.sentence());
+            file.failure = {};  // the cell failed by its expectation
+        } else {
+            file.report.evidence = file.evidence;
+        }
         notify(&RunObserver::output_written, graph_.cells[file.cells.front()], file.report);
         release({file.source});
         end_task(task);
@@ -444,13 +475,18 @@ private:
                !graph_.nodes[value.first].step;  // the node reads a file, which can be read again
     }
 
+    /// Whether the node ended with values that tasks take.
+    bool has_ended(std::size_t node) const {
+        return nodes_[node].state == State::done || nodes_[node].state == State::unmet;
+    }
+
     /// If a value that the task takes was removed, queues its node to compute it again, and makes the task wait for it.
     /// Returns whether the task has to wait.
     bool waits_for_lost(const Task& task) {
         for (const ValueSlot& source : sources(task)) {
             if (is_available(source)) continue;
             const bool is_own = task == Task{source.first};
-            if (is_own || nodes_[source.first].state == State::done) compute_again(source.first);
+            if (is_own || has_ended(source.first)) compute_again(source.first);
             if (!is_own) to_consider_.push_back(task);
             return true;
         }
@@ -459,8 +495,8 @@ private:
 
     void compute_again(std::size_t index) {
         NodeState& node = nodes_[index];
-        assert(node.state == State::done || only_expects(index));
-        const std::vector<ValueSlot> own = node.state == State::done ? std::vector<ValueSlot>{} : sources({index});
+        assert(has_ended(index) || only_expects(index));
+        const std::vector<ValueSlot> own = has_ended(index) ? std::vector<ValueSlot>{} : sources({index});
         node.state = State::pending;
         node.kept.clear();
         node.failures = 0;

@@ -17,6 +17,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/graph/output_files.hpp"
 #include "scanmill/io/atomic_file.hpp"
 #include "scanmill/records/reasons.hpp"
 #include "scanmill/records/recorder.hpp"
@@ -46,7 +47,10 @@ void require_writable(const fs::path& folder) {
 void remove_incomplete_outputs(const RunGraph& graph) {
     std::set<fs::path> folders;
     for (const RunCell& cell : graph.cells)
-        for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
+        for (const RunOutput& output : cell.outputs) {
+            folders.insert(output.file.parent_path());
+            folders.insert(failed_of(graph.output_folder, output.file).parent_path());
+        }
     for (const fs::path& folder : folders) remove_abandoned_parts(folder);
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -77,7 +79,7 @@ std::set<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
 }  // namespace
 
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
-                     const std::vector<NodeReport>& reports) {
+                     const std::vector<NodeReport>& reports, bool is_evidence) {
     const RunCell& cell = graph.cells[cells.front()];
     Json json{{"scanmill", 1},
               {"version", SCANMILL_VERSION},
@@ -93,6 +95,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
         for (const PlannedExpectation& expectation : step->expectations) json["expected"].push_back(expectation.text);
     const std::set<std::size_t> all = ancestry(graph, output.node);
     json["doubts"] = doubts_about({output}, {all.begin(), all.end()}, graph, reports);
+    if (is_evidence) json["unmet"] = unmet_by(cells, graph, reports);
     for (const std::size_t each : all) {
         const RunNode& made = graph.nodes[each];
         Json entry{{"step", graph.label(made)}, {"key", made.key}};
@@ -137,6 +140,31 @@ void write_description(const fs::path& file, const std::string& sha256, const st
     AtomicFile description(description_of(file));
     description.write(dumped(json) + "\n");
     description.commit();
+}
+
+void move_with_description(const fs::path& file, const fs::path& to, const std::vector<std::string>& unmet) {
+    std::error_code trouble;
+    fs::create_directories(to.parent_path(), trouble);
+    if (trouble) throw Error("the folder '{}' cannot be made: {}", to.parent_path().string(), trouble.message());
+    const fs::path old_description = description_of(file), new_description = description_of(to);
+    std::ifstream stream(old_description, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    Json json = Json::parse(text, nullptr, false);
+    if (json.is_object()) {
+        json["unmet"] = unmet;
+        AtomicFile description(new_description);
+        description.write(dumped(json) + "\n");
+        description.commit();
+    } else {  // an output with a long name has no description
+        fs::remove(new_description, trouble);
+    }
+    fs::rename(file, to, trouble);
+    if (trouble) {
+        std::error_code ignored;
+        fs::remove(new_description, ignored);
+        throw Error("'{}' cannot be moved to '{}': {}", file.string(), to.string(), trouble.message());
+    }
+    fs::remove(old_description, trouble);
 }
 
 }  // namespace scanmill

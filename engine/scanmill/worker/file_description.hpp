@@ -32,11 +32,11 @@ private:
 // and how it was made. Equal outputs have equal descriptions, whenever and wherever they were made.
 
 /// Describes as JSON how an output was made. The text contains the workflow, its variants, the scan, the seed, the
-/// program's version, the doubts, and the expectations of the step that made the output. For each step from the scan to
-/// the output, it contains filter, version, build, key, parameters and metrics. `cells` are all cells that share the
-/// file.
+/// program's version, the doubts, and the expectations of the step that made the output. With
+/// `is_evidence`, it contains the expectations that the cells do not meet. For each step from the scan to the output,
+/// it contains filter, version, build, key, parameters and metrics. `cells` are all cells that share the file.
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
-                     const std::vector<NodeReport>& reports);
+                     const std::vector<NodeReport>& reports, bool is_evidence = false);
 
 /// The names of all columns that the node's filter, or a filter upstream, declares to add.
 std::vector<std::string> added_columns(const RunGraph& graph, std::size_t node);
@@ -46,5 +46,11 @@ std::vector<std::string> added_columns(const RunGraph& graph, std::size_t node);
 /// zero (see WriteOptions::on_shift). Throws Error as AtomicFile does.
 void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
                        const Value& value, const Metrics& properties, const Vec3& shift);
+
+/// Moves a written output with its description to `to`, and adds `unmet`, the result of unmet_by(), to the description.
+/// Files already there are replaced. Makes the folder. Throws Error if a file cannot be moved; then the output keeps
+/// its path and its description.
+void move_with_description(const std::filesystem::path& file, const std::filesystem::path& to,
+                           const std::vector<std::string>& unmet);
 
 }  // namespace scanmill

@@ -15,6 +15,17 @@ Error Failure::whole() const {
     return all;
 }
 
+std::vector<std::string> unmet_by(const std::vector<std::size_t>& cells, const RunGraph& graph,
+                                  const std::vector<NodeReport>& reports) {
+    std::set<std::size_t> nodes;
+    for (const std::size_t cell : cells) nodes.insert(graph.cells[cell].nodes.begin(), graph.cells[cell].nodes.end());
+    std::vector<std::string> unmet;
+    for (const std::size_t node : nodes)
+        if (const Failure& failure = reports[node].failure; failure.cause == Cause::expectation)
+            unmet.push_back(fmt::format("{}: {}", graph.label(graph.nodes[node]), failure.error.sentence()));
+    return unmet;
+}
+
 std::vector<std::string> doubts_about(const std::vector<RunOutput>& outputs, const std::vector<std::size_t>& nodes,
                                       const RunGraph& graph, const std::vector<NodeReport>& reports) {
     std::set<std::pair<std::size_t, std::string>> used;  // node and port

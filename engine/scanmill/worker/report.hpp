@@ -117,6 +117,7 @@ struct OutputReport {
     u64 bytes = 0;                    ///< size of the file
     std::filesystem::path moved_to;   ///< new path of the file of an earlier run; empty: not moved
     std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: no such error
+    std::filesystem::path evidence;   ///< failed_of() the file, if it was written there; otherwise empty
 };
 constexpr auto fields(const OutputReport*) {
     using R = OutputReport;
@@ -145,6 +146,10 @@ struct RunReport {
     /// Whether an error of the program (Cause::fault) made a cell fail.
     bool has_fault() const;
 };
+
+/// The expectations that the nodes of these cells do not meet, each with the label of its step.
+std::vector<std::string> unmet_by(const std::vector<std::size_t>& cells, const RunGraph& graph,
+                                  const std::vector<NodeReport>& reports);
 
 /// The doubts about these outputs and about all values that they are made from, each with the label of its step.
 /// Pre: `nodes` contains all nodes that the outputs are made from.
