@@ -138,6 +138,33 @@ TEST_F(Unwatched, UnmetExpectation_MovesTheFileAside) {
     EXPECT_TRUE(exists("a_01.ply.previous"));
 }
 
+TEST_F(Unwatched, UnmetExpectation_IsShownByItsFilesUntilTheNextSuccess) {
+    const auto expecting = [&](int points) {
+        folder_.write("w.yaml", fmt::format("scanmill: 1\nname: w\ninputs: {{scan: points}}\nsteps:\n  - test-step:\n"
+                                            "    expect: {{points: {}}}\noutputs: {{'{{scan}}.ply': test-step}}\n",
+                                            points));
+    };
+    write_scans("a", 1);
+    write_batch("scans/*.xyz");
+    expecting(6);
+    for (const char* jobs : {"0", "1"}) {
+        const ProgramResult result = run_batch({"-j", jobs});
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_FALSE(exists("a_01.ply"));
+        EXPECT_TRUE(exists("failed/a_01.ply"));
+        EXPECT_THAT(result.err, HasSubstr("out/failed/a_01.ply'"));
+        EXPECT_THAT(result.out, ContainsRegex("1 failed .*out/failed'"));
+    }
+    const Json output = recorded(2)["cells"][0]["outputs"][0];
+    EXPECT_EQ(output["outcome"], "failed");
+    EXPECT_EQ(output["evidence"], (std::filesystem::canonical(folder_ / "out") / "failed/a_01.ply").string());
+    EXPECT_TRUE(output.contains("sha256"));
+    expecting(5);
+    EXPECT_EQ(run_batch().exit_code, 0);
+    EXPECT_TRUE(exists("a_01.ply"));
+    EXPECT_FALSE(exists("failed"));
+}
+
 TEST_F(Unwatched, InterruptedCells_KeepTheFilesOfAnEarlierRun) {
     write_workflow("1");
     write_scans("scan", 1);

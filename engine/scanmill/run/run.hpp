@@ -2,7 +2,8 @@
 #pragma once
 /// Runs a graph with one or more workers. A node whose result is in the cache does not run; every other node runs once.
 /// A value is dropped after its last use. An output file appears whole or not at all. If a node fails, the cells that
-/// need it fail; other cells go on.
+/// need it fail; other cells go on. The outputs of cells that fail only because an expectation is not met are written
+/// to failed_folder().
 
 #include <functional>
 #include <string>

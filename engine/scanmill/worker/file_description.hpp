@@ -32,9 +32,9 @@ private:
 // and how it was made. Equal outputs have equal descriptions, whenever and wherever they were made.
 
 /// Describes as JSON how an output was made. The text contains the workflow, its variants, the scan, the seed, the
-/// program's version, the doubts, and the expectations of the step that made the output. With
-/// `is_evidence`, it contains the expectations that the cells do not meet. For each step from the scan to the output,
-/// it contains filter, version, build, key, parameters and metrics. `cells` are all cells that share the file.
+/// program's version, the doubts, and the expectations of the step that made the output. With `is_evidence`, it
+/// contains the expectations that the cells do not meet. For each step from the scan to the output, it contains filter,
+/// version, build, key, parameters and metrics. `cells` are all cells that share the file.
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports, bool is_evidence = false);
 

@@ -84,6 +84,34 @@ TEST_F(OutputFilesTest, Input_IsNotReplacedByWhateverName) {
     EXPECT_NO_THROW(outputs.add("other.ply", {"k", ""}, "A"));
 }
 
+TEST_F(OutputFilesTest, InputBelowFailed_IsNotReplaced) {
+    OutputFiles outputs = files();
+    outputs.protect(folder_.write("out/failed/scan.ply", "x"));
+    EXPECT_THAT(sentence_of([&] {
+                    outputs.add("scan.ply", {"k", ""}, "A");
+                }),
+                HasSubstr("failed/scan.ply' is an input"));
+    EXPECT_NO_THROW(outputs.add("other.ply", {"k", ""}, "A"));
+}
+
+TEST_F(OutputFilesTest, FailedOutputThatIsAnothersFile_IsRefusedInEitherOrder) {
+    OutputFiles outputs = files();
+    outputs.add("a.ply", {"k", ""}, "A");
+    EXPECT_THAT(sentence_of([&] { outputs.add("failed/a.ply", {"l", ""}, "B"); }), HasSubstr("would both write"));
+    OutputFiles others = files();
+    others.add("failed/a.ply", {"l", ""}, "B");
+    EXPECT_NO_THROW(others.add("b.ply", {"k", ""}, "A"));
+    EXPECT_THAT(sentence_of([&] { others.add("a.ply", {"k", ""}, "A"); }), HasSubstr("would both write"));
+}
+
+TEST_F(OutputFilesTest, FailedFolderThatLeadsOut_IsRefused) {
+    fs::create_directories(folder_ / "out");
+    fs::create_directories(folder_ / "elsewhere");
+    fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "out/failed");
+    OutputFiles outputs = files();
+    EXPECT_THAT(sentence_of([&] { outputs.add("a.ply", {"k", ""}, "A"); }), HasSubstr("outside the output folder"));
+}
+
 TEST_F(OutputFilesTest, ProtectedFile_IsNotReplaced) {
     OutputFiles outputs = files();
     outputs.protect(folder_.write("out/poses.txt", "x"));

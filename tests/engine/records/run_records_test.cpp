@@ -84,8 +84,9 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         records.add(run, {some_step(0), some_step(2)}, {});
         CellRecord cell{"thinning", "a.ply", "alpha=1", Outcome::failed, {Cause::time, 0, "what went wrong"},
                         1.5,        {0, 2},  {},        {"a: b"},        {}};
-        cell.outputs = {{"out/a.ply", "mesh", Outcome::ok, {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
-                        {"out/b.ply", "mesh", Outcome::failed, {}, "", 0, "out/b.ply.previous"}};
+        cell.outputs = {
+            {"out/a.ply", "mesh", Outcome::ok, {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
+            {"out/b.ply", "mesh", Outcome::failed, {}, "", 0, "out/b.ply.previous", "", {}, "out/failed/b.ply"}};
         cell.costs = {{1.5, 2.5, 3'000'000'000}, {0.5, 0.25, 7}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
@@ -135,6 +136,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(run.cells[0].outputs[0].sha256, "c0ffee");
     EXPECT_EQ(run.cells[0].outputs[0].bytes, 3'000'000'000);
     EXPECT_EQ(run.cells[0].outputs[1].moved_to, "out/b.ply.previous");
+    EXPECT_EQ(run.cells[0].outputs[1].evidence, "out/failed/b.ply");
     ASSERT_EQ(run.cells[0].costs.size(), 2u);
     EXPECT_EQ(run.cells[0].costs[0].peak_memory, 3'000'000'000);
     EXPECT_EQ(run.cells[0].costs[1].cpu_seconds, 0.25);
