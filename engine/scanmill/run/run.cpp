@@ -164,9 +164,16 @@ private:
         }
     }
 
+    /// Whether the task must not start: its cells are out of time, or a task failed and RunSettings::fail_fast is set.
+    /// Outputs that show why a cell failed are written even then.
+    bool is_dropped(const Task& task) const {
+        if (!cells_.have_time(cells_of(task))) return true;
+        return has_failed_ && (task.write == 0 || !cells_.are_unmet(cells_of(task)));
+    }
+
     /// Makes the task ready, lets it wait for a node, or skips it.
     void consider(const Task& task) {
-        if (!cells_.have_time(cells_of(task))) return skip(task);
+        if (is_dropped(task)) return skip(task);
         // Inputs must be done even if the result is in the cache.
         std::vector<std::size_t> prerequisites;
         if (task.write > 0)
@@ -218,7 +225,7 @@ private:
                 continue;
             }
             ready_.erase(next);
-            if (!cells_.have_time(cells_of(task)))
+            if (is_dropped(task))
                 skip(task);
             else if (!waits_for_lost(task))
                 return task;
@@ -381,7 +388,7 @@ private:
             return;
         }
         report.node.attempts = failures + !was_ended;
-        if (report.outcome == Outcome::failed && settings_.fail_fast) is_stopped_ = true;
+        if (report.outcome == Outcome::failed && settings_.fail_fast) has_failed_ = true;
         if (task.write > 0)
             finish_write(task, std::move(report));
         else
@@ -530,6 +537,7 @@ private:
     std::set<Task> ready_;
     std::size_t busy_ = 0;
     bool is_stopped_ = false;  // no further task starts
+    bool has_failed_ = false;  // RunSettings::fail_fast is set and a task failed
 };
 
 }  // namespace

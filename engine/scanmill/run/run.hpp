@@ -21,7 +21,7 @@ namespace scanmill {
 struct RunSettings {
     unsigned threads = 1;  ///< threads for every filter; results do not depend on the number
     Limits limits;
-    bool fail_fast = false;  ///< after the first failure, no further task starts
+    bool fail_fast = false;  ///< after the first failure, no further task starts but writes to failed_folder()
     std::function<bool()> is_cancelled;
     Cache* cache = nullptr;  ///< null: every node runs and no result is stored
     std::vector<NodePrediction> prediction = {};  ///< from predict(); empty: run() calls it

@@ -141,6 +141,16 @@ TEST_F(Evidence, OutputThatTheNextFailureDoesNotReach_IsRemoved) {
     EXPECT_FALSE(exists("failed/s-b.ply"));
 }
 
+TEST_F(Evidence, FailFast_StillWritesTheFailedCell) {
+    settings_.fail_fast = true;
+    const RunReport report = run_three("'> 4'", {scan("s.xyz"), scan("t.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 3\n")});
+    EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
+    EXPECT_EQ(report.cells[1].outcome, Outcome::skipped);
+    EXPECT_TRUE(exists("failed/s-a.ply"));
+    EXPECT_TRUE(exists("failed/sub/s-b.ply"));
+    EXPECT_FALSE(exists("t-a.ply"));
+}
+
 TEST_F(Evidence, OtherFailures_WriteNothingToFailed) {
     const RunReport report = run("  - id: a\n    test-step:\n  - id: b\n    test-step: {mode: fail}\n", {scan("s.xyz")},
                                  "outputs: {'{scan}-a.ply': a, '{scan}-b.ply': b}\n");
@@ -149,7 +159,7 @@ TEST_F(Evidence, OtherFailures_WriteNothingToFailed) {
     EXPECT_FALSE(exists("failed"));
 }
 
-struct Warnings : RunObserver {
+struct NodeWarnings : RunObserver {
     void node_warning(const RunNode&, std::string_view text) override { all.emplace_back(text); }
     std::vector<std::string> all;
 };
@@ -159,7 +169,7 @@ TEST_F(Evidence, FailedFolderThatCannotBeWritten_IsOneWarning) {
     prepare("  - id: a\n    test-step: {factor: 2}\n  - id: b\n    test-step:\n    expect: {points: '> 4'}\n",
             {scan("s.xyz"), scan("t.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 3\n")},
             "outputs: {'{scan}-a.ply': a, '{scan}-b.ply': b}\n");
-    Warnings warnings;
+    NodeWarnings warnings;
     const RunReport report = run_graph(warnings);
     ASSERT_EQ(warnings.all.size(), 1u);
     EXPECT_THAT(warnings.all[0], HasSubstr((graph_.output_folder / "failed").string() + "'"));
