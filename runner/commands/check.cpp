@@ -133,7 +133,9 @@ struct CheckedFile {
     std::string summary;
 };
 
-CheckedFile check_file(const std::string& file, const FilterLibrary& library, const Settings& settings) {
+CheckedFile check_file(const std::string& file_or_name, const FilterLibrary& library, const Settings& settings,
+                       const Warn& warn) {
+    const std::string file = workflow_file(file_or_name, warn);
     const std::string text = read_workflow_file(file);
     if (!is_batch(text)) {
         CheckedWorkflow checked = check_workflow(file, text, library, settings);
@@ -168,10 +170,11 @@ void add_plan(Json& entries, const Plan& plan) {
 int check(const CheckOptions& options) {
     const FilterLibrary library = open_library();
     const Settings settings = parse_settings(options.settings);
+    const Warn warn = warning_printer();
     Json entries = Json::array();
     int code = done;
     for (const std::string& file : options.files) try {
-            const CheckedFile checked = check_file(file, library, settings);
+            const CheckedFile checked = check_file(file, library, settings, warn);
             for (const Diagnostics& diagnostics : checked.diagnostics)
                 if (options.json)
                     entries.push_back(to_json(diagnostics));
@@ -205,7 +208,7 @@ int check(const CheckOptions& options) {
 void add_check(CLI::App& app, Action& chosen) {
     auto [command, options] = add_command<CheckOptions>(
         app, chosen, "check", "Checks workflow and batch files without opening any scan", check);
-    command.add_option("FILE", options.files, "Workflow or batch files")->required();
+    command.add_option("FILE", options.files, "Workflow or batch files, or names of ready ones")->required();
     command.add_option("--set", options.settings, "A workflow parameter's value, NAME=VALUE")->take_all();
     CLI::Option* plan = command.add_flag("--plan", options.plan, "Print the steps of every variant and their inputs");
     CLI::Option* format = command.add_option("--format", options.format, "Plan format: text or dot (for Graphviz)")

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "output/terminal.hpp"
@@ -28,19 +30,74 @@ const FilterSpec& find_filter(const FilterLibrary& library, const std::string& n
     for (const UnusableModule& module : library.unusable())
         if (module.name == name)
             throw Error("the filter '{}' cannot be used: '{}' {}", name, module.manifest.string(), module.reason);
-    throw Error("there is no filter '{}'{}", name, did_you_mean(name, library.names())).hint("scanmill list");
+    const bool is_ready = std::ranges::count(ready_names(), name) > 0;
+    throw Error("there is no filter '{}'{}", name,
+                is_ready ? "; it is a ready workflow or batch" : did_you_mean(name, library.names()))
+        .hint(is_ready ? "scanmill check " + name + " --plan" : "scanmill list");
 }
 
-std::string workflow_file(const std::string& file_or_name) {
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    if (fs::exists(file_or_name, ignored) || file_or_name.find_first_of("/.") != std::string::npos) return file_or_name;
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folders that may hold the ready workflows: library folders have one level, or two as in lib/x86_64-linux-gnu.
+std::vector<fs::path> ready_folders() {
     const fs::path library = core_library_file().parent_path();
-    for (const fs::path& prefix : {library.parent_path(), library.parent_path().parent_path()}) {
-        const fs::path shipped = prefix / "share/scanmill/workflows" / (file_or_name + ".yaml");
-        if (fs::exists(shipped, ignored)) return shipped.string();
+    std::vector<fs::path> folders;
+    for (const fs::path& prefix : {library.parent_path(), library.parent_path().parent_path()})
+        folders.push_back(prefix / "share/scanmill/workflows");
+    return folders;
+}
+
+/// The path of the ready workflow or batch; empty if there is none of this name.
+std::string ready_file(const std::string& name) {
+    if (name.empty() || name.find_first_of("/.") != std::string::npos) return {};
+    std::error_code ignored;
+    for (const fs::path& folder : ready_folders()) {
+        const fs::path file = folder / (name + ".yaml");
+        if (fs::exists(file, ignored)) return file.string();
     }
-    return file_or_name;
+    return {};
+}
+
+}  // namespace
+
+std::vector<std::string> ready_names() {
+    std::set<std::string> names;
+    for (const fs::path& folder : ready_folders()) {
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+            if (entry->path().extension() == ".yaml") names.insert(entry->path().stem().string());
+    }
+    return {names.begin(), names.end()};
+}
+
+std::string workflow_file(const std::string& file_or_name, const Warn& warn) {
+    std::error_code ignored;
+    const bool exists = fs::exists(file_or_name, ignored);
+    const std::string ready = ready_file(file_or_name);
+    if (exists && !fs::is_directory(file_or_name, ignored)) {
+        if (!ready.empty())
+            warn(
+                fmt::format("'{0}' is the file in the current folder, not the ready workflow '{1}'; write './{0}' for "
+                            "the file, or the path '{1}' for the ready workflow",
+                            file_or_name, ready));
+        return file_or_name;
+    }
+    if (!ready.empty()) {
+        if (const std::string own = file_or_name + ".yaml"; fs::is_regular_file(own, ignored))
+            warn(
+                fmt::format("'{}' is the ready workflow '{}', not the file '{}' in the current folder; write '{}' for "
+                            "the file",
+                            file_or_name, ready, own, own));
+        return ready;
+    }
+    if (exists || file_or_name.find('/') != std::string::npos) return file_or_name;
+    const std::string name = file_or_name.ends_with(".yaml") ? fs::path(file_or_name).stem().string() : file_or_name;
+    const std::vector<std::string> names = ready_names();
+    throw Error("'{}' cannot be opened; expected a workflow file or the name of a ready workflow{}", file_or_name,
+                did_you_mean(name, names))
+        .hint("ready workflows and batches: " + enumerated(names));
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "scanmill/cache/cache.hpp"
 #include "scanmill/compare/comparison.hpp"
@@ -24,8 +25,15 @@ struct CheckedWorkflow {
     Plan plan;  ///< may be run only if there are no errors
 };
 
-/// Returns the file's path or, if there is no such file, the path of the shipped workflow with this name.
-std::string workflow_file(const std::string& file_or_name);
+using Warn = std::function<void(std::string)>;
+
+/// The names of the ready workflows and batches that are installed with the program, sorted.
+std::vector<std::string> ready_names();
+
+/// Resolves the argument of a command that takes a workflow or a batch. An existing file is used as it is. Otherwise
+/// the argument may be the name of a ready workflow or batch, whose path is returned; a folder does not hide it. Warns
+/// if the argument could mean both a file and a ready one. Throws Error with a suggestion if there is neither.
+std::string workflow_file(const std::string& file_or_name, const Warn& warn);
 
 /// Checks the workflow in `text`, the content of `file`.
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
@@ -42,8 +50,6 @@ void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help);
 
 /// gate_tripped if the gate tripped; otherwise some_failed if a cell failed or, with `strict`, is doubtful.
 int exit_code_of(const Comparison& comparison, bool strict);
-
-using Warn = std::function<void(std::string)>;
 
 /// Prints warnings on stderr; prints equal sentences only once.
 Warn warning_printer();

@@ -8,6 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/workflow/document.hpp"
 
@@ -26,6 +27,7 @@ struct Command {
     std::string name, help;
     std::vector<Option> options;
     std::string words;  ///< accepted arguments; empty: files
+    std::string first_words;  ///< accepted as the first argument, besides files
 };
 
 /// The accepted words of an option. The set of CLI::IsMember is part of the option's type: "TEXT:{um,mm}".
@@ -42,7 +44,7 @@ std::vector<Command> commands_of(const CLI::App& app) {
     std::vector<Command> commands;
     for (const CLI::App* command :
          app.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); })) {
-        Command described{command->get_name(), command->get_description(), {}, {}};
+        Command described{command->get_name(), command->get_description(), {}, {}, {}};
         for (const CLI::Option* option : command->get_options()) {
             for (const std::string& name : option->get_lnames())
                 described.options.push_back(
@@ -51,6 +53,8 @@ std::vector<Command> commands_of(const CLI::App& app) {
         const auto arguments = command->get_options([](const CLI::Option* each) { return each->get_positional(); });
         if (!arguments.empty()) described.words = words_of(*arguments.front());
         if (described.name == "show") described.words = "$(scanmill list --names 2>/dev/null)";
+        if (described.name == "run" || described.name == "batch" || described.name == "check")
+            described.first_words = fmt::format("{}", fmt::join(ready_names(), " "));
         commands.push_back(std::move(described));
     }
     return commands;
@@ -81,6 +85,10 @@ std::string bash(const std::vector<Command>& commands) {
         cases += fmt::format("        {}:*:-*) words=\"{}\" ;;\n", command.name, options.substr(1));
         if (!command.words.empty())
             cases += fmt::format("        {}:*) words=\"{}\" ;;\n", command.name, command.words);
+        if (!command.first_words.empty())  // the previous word is the command's name only at the first argument
+            cases += fmt::format(
+                "        {0}:{0}:*) mapfile -t COMPREPLY < <(compgen -f -W \"{1}\" -- \"$word\"); return ;;\n",
+                command.name, command.first_words);
     }
     return fmt::format(R"sh(_scanmill_settings() {{
     local all=$(scanmill complete-set "${{COMP_WORDS[@]:1}}" 2>/dev/null)
@@ -122,6 +130,8 @@ std::string zsh(const std::vector<Command>& commands) {
                                  : option.name == "--set" ? ":value:_scanmill_settings"
                                  : option.words.empty()   ? ":value:_files"
                                                           : ":value:(" + option.words + ")");
+        if (!command.first_words.empty())
+            cases += fmt::format(" '1:workflow:{{compadd -- {}; _files}}'", command.first_words);
         cases += command.words.empty() ? " '*:file:_files' ;;\n" : fmt::format(" \"*:word:({})\" ;;\n", command.words);
     }
     return fmt::format(R"sh(#compdef scanmill
@@ -154,6 +164,7 @@ std::string fish(const std::vector<Command>& commands) {
         const std::string here = fmt::format("complete -c scanmill -n '__fish_seen_subcommand_from {}'", command.name);
         if (!command.words.empty())
             text += fmt::format("{} -f -a '{}'\n", here, command.words.substr(command.words.starts_with('$')));
+        if (!command.first_words.empty()) text += fmt::format("{} -a '{}'\n", here, command.first_words);
         for (const Option& option : command.options) {
             const std::string words =
                 option.name == "--set" ? "(scanmill complete-set (commandline -opc)[2..] 2>/dev/null)" : option.words;
@@ -223,7 +234,12 @@ int complete_set(const std::vector<std::string>& words) {
         return done;
     }
     for (std::size_t i = 1; i < words.size(); ++i) {
-        const std::string file = workflow_file(words[i]);
+        std::string file;
+        try {
+            file = workflow_file(words[i], [](const std::string&) {});
+        } catch (const Error&) {
+            continue;  // a word that is neither a file nor a name, such as an incomplete one
+        }
         if (!std::filesystem::is_regular_file(file) || !file.ends_with(".yaml")) continue;
         Diagnostics ignored(file);
         print_settings(parse_workflow(read_workflow_file(file), ignored), library);

@@ -300,9 +300,10 @@ void add_scans(std::vector<ScanFile>& scans, const std::string& input,
 
 int run_workflow(const RunOptions& options) {
     Execution execution(options.execute);
-    const std::string workflow = workflow_file(options.workflow);
+    const std::string workflow = workflow_file(options.workflow, print_warning);
     const std::string text = read_workflow_file(workflow);
-    if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + workflow);
+    if (is_batch(text))
+        throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + options.workflow);
     const CheckedWorkflow checked =
         check_workflow(workflow, text, execution.library(), parse_settings(options.settings));
     if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
@@ -361,12 +362,13 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
 }
 
 int run_batch(const BatchOptions& options) {
-    const std::string text = read_workflow_file(options.file);
+    const std::string file = workflow_file(options.file, print_warning);
+    const std::string text = read_workflow_file(file);
     if (!is_batch(text))
-        throw Error("'{}' is not a batch: it has no key `batch`", options.file)
+        throw Error("'{}' is not a batch: it has no key `batch`", file)
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
     Execution execution(options.execute);
-    CheckedBatch checked = check_batch(text, options.file, execution.library());
+    CheckedBatch checked = check_batch(text, file, execution.library());
     if (!report(checked.diagnostics, options.execute.json)) return bad_request;
     choose(checked, options.choice);
     std::vector<GraphPart> parts;
@@ -375,7 +377,7 @@ int run_batch(const BatchOptions& options) {
     if (!parts.empty()) parts.front().request.protected_files = files_of(checked.batch);
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
-    SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
+    SessionTask task{checked.batch.name, file, std::move(graph), checked.batch.limits};
     // A partial run gets its own name, because the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
     if (checked.batch.gate) task.gate = *checked.batch.gate;
@@ -388,7 +390,7 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     auto [run, options] =
         add_command<RunOptions>(app, chosen, "run", "Runs a workflow over one scan or many", run_workflow);
     run.add_option("WORKFLOW", options.workflow,
-                   "The workflow file, or the name of a shipped one, such as bernardini-1997")
+                   "The workflow file, or the name of a ready one, such as bernardini-1997")
         ->required();
     run.add_option("SCAN", options.scans,
                    "Files for the workflow's first input: one run each, or one run for all if that input is a list");
@@ -410,7 +412,8 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
 
     auto [batch, batch_options] = add_command<BatchOptions>(
         app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);
-    batch.add_option("FILE", batch_options.file, "The batch file")->required();
+    batch.add_option("FILE", batch_options.file, "The batch file, or the name of a ready one, such as nightly")
+        ->required();
     const auto add_choice = [&batch = batch](const char* name, std::vector<std::string>& values, const char* help) {
         batch.add_option(name, values, help)->take_all()->allow_extra_args(false);
     };

@@ -87,6 +87,13 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
     EXPECT_EQ(completed(folder, "schema w", 2), "workflow\n");
 }
 
+TEST(Completion, Bash_ProposesReadyWorkflowsAsTheFirstArgument) {
+    const TemporaryFolder folder;
+    for (const std::string command : {"run", "batch", "check"})
+        EXPECT_EQ(completed(folder, command + " raw-sc", 2), "raw-scans\n") << command;
+    EXPECT_EQ(completed(folder, "run quickstart raw-sc", 3), "\n");
+}
+
 TEST(Completion, Bash_ProposesTheValuesOfOptions) {
     const TemporaryFolder folder;
     EXPECT_EQ(completed(folder, "run w.yaml --keep ''", 4), "worth always never\n");
