@@ -57,8 +57,22 @@ private:
             if (rule.text != "exact")
                 throw Error("'{}' is not a rule for the bytes of output files; expected exact", rule.text);
         } else {
-            for (const Gated& gated : metrics_of(rule)) require_rule_fits(rule.text, gated.unit, gated.better);
+            const std::vector<Gated> metrics = metrics_of(rule);
+            for (const Gated& gated : metrics) require_rule_fits(rule.text, gated.unit, gated.better);
+            if (requires_truth(rule.text) && !metrics.empty()) require_truth_of(rule.metric);
         }
+    }
+
+    /// Throws Error if no step reports the value of the truth for this metric.
+    void require_truth_of(const std::string& metric) const {
+        const std::size_t dot = metric.find('.');
+        const std::string name =
+            std::string(truth_prefix) + (dot == std::string::npos ? metric : metric.substr(dot + 1));
+        if (of_steps(name, [](const PlannedStep*) { return true; }).empty())
+            throw Error(
+                "'= truth' needs a metric '{}', which no step or measurement reports; expected exact, or "
+                "`measure:` and scans with a truth",
+                name);
     }
 
     /// The metrics to which the rule applies (see gate.hpp); empty after an error.

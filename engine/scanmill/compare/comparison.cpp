@@ -243,7 +243,60 @@ private:
         }
     }
 
+    /// The value of the cell's truth for this value, in the same unit. A metric of the same source comes first.
+    std::optional<double> truth_of(const CellValue& value) const {
+        const std::string name = std::string(truth_prefix) + value.metric.name;
+        const CellValue* found = nullptr;
+        for (const CellValue& other : result_.values)
+            if (other.metric.name == name &&
+                (!found || (found->source != value.source && other.source == value.source)))
+                found = &other;
+        if (!found || !are_comparable(*found, value)) return std::nullopt;
+        return *change_of(found, &value).accepted;
+    }
+
+    static bool is_nearer(const MetricChange& change, double truth) {
+        return change.accepted && change.found && std::abs(*change.found - truth) < std::abs(*change.accepted - truth);
+    }
+
+    /// Judges the rule `= truth`. A value that differs from the truth is a regression, unless it has moved towards it.
+    void apply_truth(const GateRule& rule, const std::vector<CellValue>& before) {
+        const std::vector<const CellValue*> values = named(result_.values, rule.metric);
+        const std::vector<const CellValue*> earlier = named(before, rule.metric);
+        if (values.empty() && earlier.empty())
+            inapplicable_.push_back(
+                fmt::format("the rule {}: {} cannot be applied: the cell has no such value", rule.metric, rule.text));
+        for (const CellValue* is : values) {
+            judged_.insert(is->full_name());
+            const std::optional<double> truth = truth_of(*is);
+            if (!truth) {
+                inapplicable_.push_back(fmt::format("the rule {}: {} cannot be applied: the cell has no metric {}{}",
+                                                    rule.metric, rule.text, truth_prefix, is->metric.name));
+                continue;
+            }
+            const CellValue* was = same_value(before, *is);
+            MetricChange change = change_of(was && are_comparable(*was, *is) ? was : nullptr, is);
+            change.rule = fmt::format("{} ({})", rule.text, shown(*truth, change.unit, change.lengths));
+            if (*change.found != *truth)
+                change.effect = is_nearer(change, *truth) ? Effect::improvement : Effect::regression;
+            else if (change.accepted && *change.accepted != *change.found)
+                change.effect = Effect::improvement;
+            else
+                continue;
+            result_.metrics.push_back(std::move(change));
+        }
+        for (const CellValue* was : earlier) {
+            if (same_value(result_.values, *was)) continue;
+            judged_.insert(was->full_name());
+            MetricChange change = change_of(was, nullptr);
+            change.rule = rule.text;
+            change.effect = Effect::regression;
+            result_.metrics.push_back(std::move(change));
+        }
+    }
+
     void apply(const GateRule& rule, bool is_comparable, const std::vector<CellValue>& before) {
+        if (requires_truth(rule.text)) return apply_truth(rule, before);
         std::vector<const CellValue*> now = named(result_.values, rule.metric);
         for (const CellValue* was : named(before, rule.metric)) {
             const CellValue* is = same_value(result_.values, *was);
@@ -263,8 +316,12 @@ private:
                 continue;
             } else if (*change.accepted == *change.found)
                 continue;
-            else
+            else {
                 change.effect = effect_of(*tolerance, *change.accepted, *change.found);
+                const std::optional<double> truth = truth_of(*is);
+                if (change.effect == Effect::regression && truth && is_nearer(change, *truth))
+                    change.effect = Effect::improvement;
+            }
             result_.metrics.push_back(std::move(change));
         }
         for (const CellValue* is : now) {
@@ -431,6 +488,9 @@ private:
         if (!change.found)
             return fmt::format("{} is gone; it was {}", change.metric,
                                shown(*change.accepted, change.unit, change.lengths));
+        if (!change.accepted)
+            return fmt::format("{} is {} ({})", change.metric, shown(*change.found, change.unit, change.lengths),
+                               change.rule);
         return fmt::format("{} {} → {} ({})", change.metric, shown(*change.accepted, change.unit, change.lengths),
                            shown(*change.found, change.unit, change.lengths), change.rule);
     }

@@ -83,6 +83,7 @@ Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, 
 }
 
 void require_rule_fits(std::string_view text, Unit unit, Better better) {
+    if (requires_truth(text)) return;
     // The unit and the diagonal are arbitrary: only the form and the sign are checked.
     const Tolerance tolerance = parse_tolerance(text, unit, LengthUnit::millimetre, 1);
     if (better == Better::neither || text == "exact") return;

@@ -7,7 +7,9 @@
 /// - `-1 %`: the value may fall by 1 % of the accepted value, and rise without limit;
 /// - `1 %`: the value may rise or fall by 1 % of the accepted value;
 /// - `+0.01 mm`, `-2`, `3 deg`: the same with an absolute amount;
-/// - `exact`: the value must be equal.
+/// - `exact`: the value must be equal;
+/// - `= truth`: the value NAME must be equal to the metric `truth-NAME` of the same cell, whatever was accepted.
+/// If a cell has the metric `truth-NAME`, a value that moves towards it is never a regression.
 /// Rules for the costs `seconds`, `cpu-seconds` and `memory` have the form `+20 %`. The rule for `outputs` is `exact`:
 /// no byte of an output file may change.
 ///
@@ -57,13 +59,19 @@ struct Tolerance {
 Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal);
 
 /// Checks a rule of a batch before any value is known. Throws Error as parse_tolerance() does. If one direction is
-/// better, also throws Error for a rule that limits improvements: one without a sign or with the wrong sign.
+/// better, also throws Error for a rule that limits improvements: one without a sign or with the wrong sign. `= truth`
+/// fits every metric.
 void require_rule_fits(std::string_view text, Unit unit, Better better);
 
 /// The beginning of the labels of steps that a batch's `measure` adds.
 inline constexpr std::string_view measurement_prefix = "measure-";
 /// Whether a batch's `measure` added the step with this label, so that its metrics are measurements.
 inline bool is_measurement(std::string_view label) { return label.starts_with(measurement_prefix); }
+
+/// The beginning of the names of metrics that are properties of a cell's truth.
+inline constexpr std::string_view truth_prefix = "truth-";
+/// Whether the rule's text requires the value of the truth.
+inline bool requires_truth(std::string_view text) { return text == "= truth"; }
 
 /// Whether the name is one of the costs `seconds`, `cpu-seconds` and `memory`.
 bool is_cost(std::string_view metric);

@@ -65,6 +65,14 @@ TEST_F(GateOfABatch, TextThatDoesNotFitTheMetric_IsRefused) {
     EXPECT_THAT(gate("{distance: [1 %]}"), ElementsAre(HasSubstr("expected a tolerance, as +1 %")));
 }
 
+TEST_F(GateOfABatch, RuleOfTheTruth_IsRefusedForMetricsThatATruthDoesNotHave) {
+    EXPECT_THAT(gate("{handles: '= truth'}"),
+                ElementsAre(AllOf(StartsWith("b:6:8: handles: "), HasSubstr("'truth-handles'"), HasSubstr("exact"))));
+    EXPECT_THAT(gate("{measure-surface.handles: '= truth'}"), ElementsAre(HasSubstr("'truth-handles'")));
+    EXPECT_THAT(gate("{seconds: '= truth'}"), ElementsAre(HasSubstr("+20 %")));
+    EXPECT_THAT(gate("{outputs: '= truth'}"), ElementsAre(HasSubstr("expected exact")));
+}
+
 TEST_F(GateOfABatch, Repeats_AreOneToTwenty) {
     const auto repeats = [&](const std::string& text) { return gate("{seconds: +20 %, repeats: " + text + "}"); };
     EXPECT_THAT(repeats("20"), IsEmpty());

@@ -66,6 +66,51 @@ TEST(Comparison, EveryFormOfRule_LimitsWhatItSays) {
     EXPECT_EQ(judged("exact", 0.5, std::nextafter(0.5, 1)), Verdict::regressed);
 }
 
+/// A run with a measured genus, and that of the truth; nan: none.
+RunDetails run_with_genus(std::int64_t id, double genus, double truth, const std::string& rule = "= truth") {
+    RunDetails run = run_of_one(id, 0.5, {{"genus", rule, {}}});
+    Metrics& metrics = step_of(run, run.cells[0], "measure-surface").metrics;
+    metrics.set("genus", genus, Unit::count);
+    metrics.set("truth-genus", truth, Unit::count);
+    return run;
+}
+
+Verdict judged_by_truth(double accepted, double found, double truth, const std::string& rule = "= truth") {
+    return compared(run_with_genus(2, found, truth, rule), run_with_genus(1, accepted, truth, rule)).cells[0].verdict;
+}
+
+TEST(Comparison, RuleOfTheTruth_RequiresItsValueWhateverWasAccepted) {
+    EXPECT_EQ(judged_by_truth(1, 1, 1), Verdict::passed);
+    EXPECT_EQ(judged_by_truth(1, 2, 1), Verdict::regressed);
+    EXPECT_EQ(judged_by_truth(2, 2, 1), Verdict::regressed) << "the accepted run was wrong, too";
+    EXPECT_EQ(judged_by_truth(2, 1, 1), Verdict::improved);
+    EXPECT_EQ(judged_by_truth(4, 2, 1), Verdict::improved) << "nearer";
+    EXPECT_EQ(judged_by_truth(2, 0, 1), Verdict::regressed) << "as far on the other side";
+    const Comparison wrong = compared(run_with_genus(2, 3, 1), run_with_genus(1, 2, 1));
+    EXPECT_THAT(wrong.cells[0].reasons,
+                Contains(AllOf(HasSubstr("genus"), HasSubstr("2"), HasSubstr("3"), HasSubstr("= truth (1)"))));
+}
+
+TEST(Comparison, RuleOfTheTruth_NeedsNoAcceptedRun) {
+    EXPECT_EQ(compare(run_with_genus(1, 1, 1), nullptr).cells[0].verdict, Verdict::is_new);
+    const Comparison wrong = compare(run_with_genus(1, 3, 1), nullptr);
+    EXPECT_EQ(wrong.cells[0].verdict, Verdict::regressed);
+    EXPECT_THAT(wrong.cells[0].reasons, Contains(AllOf(HasSubstr("genus"), HasSubstr("3"), HasSubstr("truth (1)"))));
+}
+
+TEST(Comparison, RuleOfTheTruth_WithoutItsValue_CannotBeApplied) {
+    const Comparison comparison = compared(run_with_genus(2, 1, nan), run_with_genus(1, 1, nan));
+    EXPECT_EQ(comparison.cells[0].verdict, Verdict::failed);
+    EXPECT_THAT(comparison.cells[0].reasons, Contains(HasSubstr("truth-genus")));
+}
+
+TEST(Comparison, ValueThatMovesTowardsTheTruth_IsNoRegression) {
+    EXPECT_EQ(judged_by_truth(3, 1, 1, "exact"), Verdict::improved);
+    EXPECT_EQ(judged_by_truth(1, 3, 1, "exact"), Verdict::regressed);
+    EXPECT_EQ(judged_by_truth(3, 2, 1, "1 %"), Verdict::improved);
+    EXPECT_EQ(judged_by_truth(3, 1, nan, "exact"), Verdict::regressed) << "no truth is known";
+}
+
 TEST(Comparison, ZeroNegativeAndInfiniteValues_HaveLimits) {
     EXPECT_EQ(judged("+1 %", 0, 0), Verdict::passed);
     EXPECT_EQ(judged("+1 %", 0, 1e-9), Verdict::regressed) << "a share of nothing is nothing";

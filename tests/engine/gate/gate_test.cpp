@@ -139,6 +139,8 @@ TEST(GateRuleCheck, Direction_MustBeThatOfRegressions) {
     require_rule_fits("-1 %", Unit::ratio, Better::larger);
     require_rule_fits("1 %", Unit::count, Better::neither);
     require_rule_fits("exact", Unit::boolean, Better::larger);
+    require_rule_fits("= truth", Unit::count, Better::neither);
+    require_rule_fits("= truth", Unit::length, Better::smaller);
     EXPECT_EQ(sentence_of([] { require_rule_fits("+1 %", Unit::ratio, Better::larger); }),
               "'+1 %' limits the wrong direction: larger is better; expected -1 % or exact");
     EXPECT_EQ(sentence_of([] { require_rule_fits("- 0.01 mm", Unit::length, Better::smaller); }),
