@@ -362,13 +362,13 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
 }
 
 int run_batch(const BatchOptions& options) {
-    const std::string file = workflow_file(options.file, print_warning);
-    const std::string text = read_workflow_file(file);
+    const std::string batch_file = workflow_file(options.file, print_warning);
+    const std::string text = read_workflow_file(batch_file);
     if (!is_batch(text))
-        throw Error("'{}' is not a batch: it has no key `batch`", file)
+        throw Error("'{}' is not a batch: it has no key `batch`", batch_file)
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
     Execution execution(options.execute);
-    CheckedBatch checked = check_batch(text, file, execution.library());
+    CheckedBatch checked = check_batch(text, batch_file, execution.library());
     if (!report(checked.diagnostics, options.execute.json)) return bad_request;
     choose(checked, options.choice);
     std::vector<GraphPart> parts;
@@ -377,7 +377,7 @@ int run_batch(const BatchOptions& options) {
     if (!parts.empty()) parts.front().request.protected_files = files_of(checked.batch);
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
-    SessionTask task{checked.batch.name, file, std::move(graph), checked.batch.limits};
+    SessionTask task{checked.batch.name, batch_file, std::move(graph), checked.batch.limits};
     // A partial run gets its own name, because the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
     if (checked.batch.gate) task.gate = *checked.batch.gate;
