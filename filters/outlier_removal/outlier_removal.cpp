@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/statistics.hpp"
@@ -26,13 +27,26 @@ namespace {
 using Method = OutlierRemovalParams::Method;
 
 constexpr u32 most_neighbours = 1000;
-/// A point hovers if its nearest position and the plane of its neighbours are both farther away than this share of its
-/// mean distance to them.
+/// Least limit of the logarithm of a position's mean distance over that of its neighbours.
+constexpr double least_log_limit = 0.25;
+/// The standard deviation of a normal distribution over its median absolute deviation.
+constexpr double deviation_per_mad = 1.4826;
+/// A position hovers if its nearest position and the plane of its neighbours are both farther away than this share of
+/// its mean distance to them.
 constexpr double hovering_share = 0.6;
-/// Largest surface variation of a flat suspect and its neighbours.
-constexpr double flat_variation = 0.0125;
-/// Mutual neighbours are connected up to a distance of this many limits.
-constexpr double reach = 2;
+/// Largest surface variation of a position and its neighbours in one surface, and largest distance of the position from
+/// their plane, in mean distances of the neighbours.
+constexpr double flat_variation = 0.0125, flat_height = 0.5;
+/// Positions are sparse above this many mean distances of the surface. Sparse positions are scattered over a volume if
+/// their surface variation is above `scattered_variation`; a ball has 1/3.
+constexpr double sparse_factor = 2.5, scattered_variation = 0.05;
+/// A cluster of scattered positions belongs to the surface if at least this share of it is linked to the surface.
+constexpr double linked_share = 0.15;
+/// Neighbours are linked up to a distance of this many mean distances of either.
+constexpr double longest_link = 6;
+/// With Method::radius, neighbours are also linked at most up to this many radii.
+constexpr double links_per_radius = 2;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 /// The result is doubtful if more than this share of the points are outliers.
 constexpr double doubtful_share = 0.1;
 /// Relative tolerance at the limit: equal distances may differ by rounding, and none of them becomes a suspect.
@@ -70,6 +84,8 @@ struct Neighbourhoods {
     Array<u32> repeats;
     /// By position: the distance that the method compares with its limit.
     Array<double> distances;
+    /// By position: its mean distance to its neighbours.
+    Array<double> means;
     /// Median distance from a position to the nearest other one. 0 for one position, and if `radius` is not in
     /// `spacing`.
     double spacing = 0;
@@ -105,13 +121,14 @@ double last_distance(std::span<const Neighbour> neighbours, std::span<const u32>
 }
 
 Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemovalParams& params, Context& context) {
-    Neighbourhoods result{PointTree(points, context.threads()), 0, {}, {}, {}, 0};
+    Neighbourhoods result{PointTree(points, context.threads()), 0, {}, {}, {}, {}, 0};
     context.check_cancelled();
     context.progress(0.2);
     const std::size_t size = result.positions().size();
     result.each = std::min<std::size_t>(params.neighbours, size - 1);
     result.nearest.resize(size * result.each);
     result.distances.resize(size);
+    result.means.resize(size);
     result.repeats.assign(size, 0);
     for (const u32 index : result.tree.index_of_row()) ++result.repeats[index];
 
@@ -126,6 +143,9 @@ Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemo
             for (std::size_t k = 0; k < neighbours.size(); ++k)
                 result.nearest[index * result.each + k] = neighbours[k].index;
             if (!neighbours.empty()) nearest[index] = std::sqrt(neighbours.front().squared);
+            double sum = 0;
+            for (const Neighbour& neighbour : neighbours) sum += std::sqrt(neighbour.squared);
+            result.means[index] = neighbours.empty() ? 0 : sum / static_cast<double>(neighbours.size());
             const std::size_t duplicates = result.repeats[index] - 1;
             result.distances[index] = params.method == Method::statistical
                                           ? mean_distance(neighbours, result.repeats, duplicates, others)
@@ -138,99 +158,175 @@ Neighbourhoods neighbourhoods_of(std::span<const Vec3> points, const OutlierRemo
     return result;
 }
 
-/// Mean plus `factor` standard deviations of the distances of all points. If `repeated`, the limit is computed again
-/// from the points up to the limit, until no more points are excluded.
-double statistical_limit(const Neighbourhoods& all, double factor, bool repeated) {
-    struct Item {
-        double distance;
-        u32 points;
-    };
-    Array<Item> items(all.distances.size());
-    for (std::size_t i = 0; i < items.size(); ++i) items[i] = {all.distances[i], all.repeats[i]};
-    std::ranges::sort(items, {}, &Item::distance);
-
-    // Sums over the items up to each one. The least distance is subtracted, so that equal distances deviate by exactly
-    // 0.
-    struct Sums {
-        double points = 0, distances = 0, squares = 0;
-    };
-    const double least = items.front().distance;
-    Array<Sums> sums(items.size());
-    Sums sum;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const double points = items[i].points, distance = items[i].distance - least;
-        sum.points += points;
-        sum.distances += points * distance;
-        sum.squares += points * distance * distance;
-        sums[i] = sum;
+/// Mean plus `factor` standard deviations (divisor n - 1) of the distances of all points.
+double statistical_limit(const Neighbourhoods& all, double factor) {
+    // The least distance is subtracted, so that equal distances deviate by exactly 0.
+    const double least = *std::ranges::min_element(all.distances);
+    double points = 0, distances = 0, squares = 0;
+    for (std::size_t i = 0; i < all.distances.size(); ++i) {
+        const double count = all.repeats[i], distance = all.distances[i] - least;
+        points += count;
+        distances += count * distance;
+        squares += count * distance * distance;
     }
-    std::size_t count = items.size();
-    while (true) {
-        const Sums& s = sums[count - 1];
-        const double mean = s.distances / s.points;
-        const double variance = s.points > 1 ? (s.squares - s.distances * mean) / (s.points - 1) : 0;
-        const double limit = (least + mean + factor * std::sqrt(std::max(0.0, variance))) * (1 + rounding);
-        const auto end = std::upper_bound(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count), limit,
-                                          [](double value, const Item& item) { return value < item.distance; });
-        const auto passing = static_cast<std::size_t>(end - items.begin());
-        if (!repeated || passing == count || passing == 0) return limit;
-        count = passing;
-    }
+    const double mean = distances / points;
+    const double variance = points > 1 ? (squares - distances * mean) / (points - 1) : 0;
+    return (least + mean + factor * std::sqrt(std::max(0.0, variance))) * (1 + rounding);
 }
 
-/// Flat suspects lie in the surface that their neighbours form; hovering ones lie above it.
-enum class State : u8 { passed, flat, suspect, hovering };
-
-/// Pre: at least one neighbour.
-State state_of_suspect(const Neighbourhoods& all, u32 index, Array<Vec3>& offsets) {
-    const Vec3& position = all.positions()[index];
-    double sum = 0;
-    offsets.clear();
-    for (const u32 other : all.of(index)) {
-        offsets.push_back(all.positions()[other] - position);
-        sum += std::sqrt(squared_distance(all.positions()[other], position));
-    }
-    const double least = hovering_share * sum / static_cast<double>(offsets.size());
-    const Scatter others = scatter_of(offsets);
-    if (std::sqrt(squared_distance(offsets.front(), Vec3::Zero())) > least &&
-        std::abs(others.normal.dot(others.centroid)) > least)
-        return State::hovering;
-    offsets.push_back(Vec3::Zero());
-    return scatter_of(offsets).surface_variation <= flat_variation ? State::flat : State::suspect;
-}
-
-/// The state of every position. Suspects are classified only if `connected`.
-Array<State> states_of(const Neighbourhoods& all, double limit, bool connected, Context& context) {
-    Array<State> states(all.positions().size());
-    for_each_chunk(context.threads(), states.size(), chunk_size, [&](std::size_t begin, std::size_t end) {
+/// By position: the logarithm of its mean distance over the median of its neighbours' mean distances.
+std::vector<double> log_ratios(const Neighbourhoods& all, Context& context) {
+    std::vector<double> ratios(all.means.size(), 0);
+    if (all.each == 0) return ratios;
+    for_each_chunk(context.threads(), ratios.size(), chunk_size, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
-        Array<Vec3> offsets;
+        std::vector<double> around(all.each);
         for (std::size_t i = begin; i < end; ++i) {
-            states[i] = all.distances[i] > limit ? State::suspect : State::passed;
-            if (connected && states[i] == State::suspect && all.each > 0)
-                states[i] = state_of_suspect(all, static_cast<u32>(i), offsets);
+            std::ranges::transform(all.of(static_cast<u32>(i)), around.begin(),
+                                   [&](u32 other) { return all.means[other]; });
+            ratios[i] = elementary::log(all.means[i] / median(around));
         }
     });
-    return states;
+    return ratios;
 }
 
-/// Unites connected positions of which one is among the nearest of the other.
-void unite_neighbours(const Neighbourhoods& all, std::span<const State> states, double limit, double radius,
-                      DisjointSets& sets, Context& context) {
+/// The median of the ratios plus `factor` standard deviations, which are estimated by the median absolute deviation.
+double robust_limit(std::vector<double> ratios, double factor) {
+    const double middle = median(ratios);
+    for (double& ratio : ratios) ratio = std::abs(ratio - middle);
+    return std::max(least_log_limit, middle + factor * deviation_per_mad * median(ratios));
+}
+
+/// The shape of the surface at a position.
+struct Shape {
+    double variation = 0;  ///< Scatter::surface_variation of the position and its neighbours
+    double height = 0;  ///< distance from the plane of its neighbours
+    double nearest = 0;  ///< distance to the nearest of them
+};
+
+/// Pre: at least one neighbour.
+Shape shape_at(const Neighbourhoods& all, u32 index, Array<Vec3>& offsets) {
+    const Vec3& position = all.positions()[index];
+    offsets.clear();
+    for (const u32 other : all.of(index)) offsets.push_back(all.positions()[other] - position);
+    const Scatter others = scatter_of(offsets);
+    const double nearest = std::sqrt(squared_distance(offsets.front(), Vec3::Zero()));
+    offsets.push_back(Vec3::Zero());
+    return {scatter_of(offsets).surface_variation, std::abs(others.normal.dot(others.centroid)), nearest};
+}
+
+/// The mean distance that is usual on the surface: the median over the positions that lie in a surface with their
+/// neighbours, of at most 10,000 that are spread over all. Without such positions, the median over all of these.
+double usual_distance(const Neighbourhoods& all) {
+    constexpr std::size_t most = 10'000;
+    const std::size_t count = all.means.size(), step = count / most + 1;
+    std::vector<double> flat, any;
+    Array<Vec3> offsets;
+    for (std::size_t i = 0; i < count; i += step) {
+        any.push_back(all.means[i]);
+        if (shape_at(all, static_cast<u32>(i), offsets).variation <= scattered_variation) flat.push_back(all.means[i]);
+    }
+    return median(flat.empty() ? any : flat);
+}
+
+/// What is known of a position. A position that passed and is not sparse counts as one in a surface.
+struct Judgement {
+    bool is_suspect = false;
+    bool is_sparse = false;
+    bool is_hovering = false;
+    bool is_scattered = false;  ///< sparse, and not in one surface with its neighbours
+    bool is_cut_off = false;  ///< in a cluster of scattered positions that is not part of the surface
+    bool is_in_surface = true;
+
+    bool is_usable() const { return !is_hovering && !is_cut_off; }
+    bool connects() const { return is_usable() && (!is_suspect || !is_sparse || is_in_surface); }
+};
+
+Array<Judgement> judged(const Neighbourhoods& all, std::span<const u8> is_suspect, Context& context) {
+    Array<Judgement> judgements(is_suspect.size());
+    if (all.each == 0) return judgements;
+    const double usual = usual_distance(all), sparse = sparse_factor * usual;
+    for_each_chunk(context.threads(), judgements.size(), chunk_size, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        Array<Vec3> offsets;
+        std::vector<double> around(all.each);
+        for (std::size_t i = begin; i < end; ++i) {
+            Judgement& its = judgements[i];
+            its.is_suspect = is_suspect[i] != 0;
+            its.is_sparse = all.means[i] > sparse;
+            if (!its.is_suspect && !its.is_sparse) continue;
+            const u32 index = static_cast<u32>(i);
+            const Shape shape = shape_at(all, index, offsets);
+            std::ranges::transform(all.of(index), around.begin(), [&](u32 other) { return all.means[other]; });
+            const double least = hovering_share * all.means[i];
+            its.is_hovering = its.is_suspect && all.means[i] > usual && shape.nearest > least && shape.height > least;
+            its.is_scattered = its.is_sparse && shape.variation > scattered_variation;
+            its.is_in_surface = shape.variation <= flat_variation && shape.height <= flat_height * median(around);
+        }
+    });
+    return judgements;
+}
+
+bool are_mutual(const Neighbourhoods& all, u32 index, u32 other) {
+    return std::ranges::find(all.of(other), index) != all.of(other).end();
+}
+
+/// Cuts off clusters of positions in whose neighbourhoods most are scattered, unless enough of a cluster is linked to
+/// the surface.
+void cut_off_scattered(const Neighbourhoods& all, Array<Judgement>& judgements, Context& context) {
+    const u32 count = static_cast<u32>(judgements.size());
+    std::vector<bool> is_member(count, false);
+    DisjointSets clusters(count);
+    for (u32 i = 0; i < count; ++i) {
+        if (!judgements[i].is_scattered || judgements[i].is_hovering) continue;
+        std::size_t scattered = 1;
+        for (const u32 other : all.of(i)) scattered += judgements[other].is_scattered;
+        is_member[i] = 2 * scattered > all.each + 1;
+    }
+    context.check_cancelled();
+    std::vector<u32> size(count, 0), linked(count, 0);
+    for (u32 i = 0; i < count; ++i) {
+        if (!is_member[i]) continue;
+        for (const u32 other : all.of(i))
+            if (is_member[other] && are_mutual(all, i, other)) clusters.unite(i, other);
+    }
+    for (u32 i = 0; i < count; ++i) {
+        if (!is_member[i]) continue;
+        ++size[clusters.find(i)];
+        linked[clusters.find(i)] += std::ranges::any_of(all.of(i), [&](u32 other) {
+            return !judgements[other].is_scattered && !judgements[other].is_hovering && are_mutual(all, i, other);
+        });
+    }
+    for (u32 i = 0; i < count; ++i)
+        judgements[i].is_cut_off =
+            is_member[i] && linked[clusters.find(i)] < linked_share * static_cast<double>(size[clusters.find(i)]);
+}
+
+/// Unites neighbours that are at most `most` apart: mutual ones, and those of a position that lies in their surface. A
+/// sparse suspect that does not lie in its surface joins only the nearest mutual neighbour that is not of its kind, so
+/// it never connects others.
+void unite_neighbours(const Neighbourhoods& all, std::span<const Judgement> judgements, double most, DisjointSets& sets,
+                      Context& context) {
     const std::span<const Vec3> positions = all.positions();
-    const double near = std::max(limit, radius) * std::max(limit, radius), far = reach * limit * (reach * limit);
+    const auto is_near = [&](u32 index, u32 other) {
+        const double longest = std::min(most, longest_link * std::min(all.means[index], all.means[other]));
+        return squared_distance(positions[index], positions[other]) <= longest * longest;
+    };
     for (u32 index = 0; index < positions.size(); ++index) {
         if (index % chunk_size == 0) context.check_cancelled();
-        if (states[index] == State::hovering) continue;
+        if (!judgements[index].connects()) continue;
         for (const u32 other : all.of(index)) {
-            if (states[other] == State::hovering || sets.find(index) == sets.find(other)) continue;
-            const double squared = squared_distance(positions[index], positions[other]);
-            const bool both_passed = states[index] == State::passed && states[other] == State::passed;
-            const bool both_in_surface = states[index] <= State::flat && states[other] <= State::flat;
-            if ((both_passed && squared <= near) ||
-                (squared <= far && (both_in_surface || std::ranges::find(all.of(other), index) != all.of(other).end())))
+            if (!judgements[other].connects() || sets.find(index) == sets.find(other)) continue;
+            if (is_near(index, other) && (judgements[index].is_in_surface || are_mutual(all, index, other)))
                 sets.unite(index, other);
         }
+    }
+    for (u32 index = 0; index < positions.size(); ++index) {
+        if (judgements[index].connects() || !judgements[index].is_usable()) continue;
+        const auto joined = std::ranges::find_if(all.of(index), [&](u32 other) {
+            return judgements[other].connects() && is_near(index, other) && are_mutual(all, index, other);
+        });
+        if (joined != all.of(index).end()) sets.unite(index, *joined);
     }
 }
 
@@ -245,6 +341,8 @@ struct Components {
     u32 largest() const { return static_cast<u32>(std::ranges::max_element(size) - size.begin()); }
 };
 
+bool has_passed(const Judgement& its) { return !its.is_suspect && its.is_usable(); }
+
 /// A passed position with its component and its grid cell.
 struct Cluster {
     u32 label;
@@ -254,12 +352,12 @@ struct Cluster {
 };
 
 /// The passed positions outside the largest component, by component and cell.
-std::vector<Cluster> clusters_of(const Neighbourhoods& all, std::span<const State> states, double edge,
+std::vector<Cluster> clusters_of(const Neighbourhoods& all, std::span<const Judgement> judgements, double edge,
                                  const Components& components) {
     const u32 largest = components.largest();
     std::vector<Cluster> clusters;
-    for (u32 index = 0; index < states.size(); ++index)
-        if (states[index] == State::passed && components.label[index] != largest)
+    for (u32 index = 0; index < judgements.size(); ++index)
+        if (has_passed(judgements[index]) && components.label[index] != largest)
             clusters.push_back({components.label[index], (all.positions()[index] / edge).array().floor(), index});
     std::ranges::sort(clusters, {}, &Cluster::key);
     return clusters;
@@ -268,14 +366,14 @@ std::vector<Cluster> clusters_of(const Neighbourhoods& all, std::span<const Stat
 /// Unites passed positions within the radius that are not among each other's nearest, as in groups of many points side
 /// by side. Searches from all components but the largest. A dense group can be smaller than the radius, so there is one
 /// search per grid cell.
-void unite_groups(const Neighbourhoods& all, std::span<const State> states, double radius, DisjointSets& sets,
+void unite_groups(const Neighbourhoods& all, std::span<const Judgement> judgements, double radius, DisjointSets& sets,
                   Context& context) {
     if (!(radius > 0)) return;
     const std::span<const Vec3> positions = all.positions();
-    const Components components(sets, states.size());
+    const Components components(sets, judgements.size());
     constexpr double cells_per_radius = 8;
     const double edge = radius / cells_per_radius;
-    const std::vector<Cluster> clusters = clusters_of(all, states, edge, components);
+    const std::vector<Cluster> clusters = clusters_of(all, judgements, edge, components);
     std::vector<std::size_t> begins;  // the first position of every cell
     for (std::size_t i = 0; i < clusters.size(); ++i)
         if (i == 0 || clusters[i].label != clusters[i - 1].label || clusters[i].cell != clusters[i - 1].cell)
@@ -295,7 +393,7 @@ void unite_groups(const Neighbourhoods& all, std::span<const State> states, doub
             for (const Neighbour& neighbour :
                  all.tree.within(cell.front().index, cell.size() > 1 ? most : least, buffer)) {
                 const u32 label = components.label[neighbour.index];
-                if (states[neighbour.index] != State::passed || label == last || label == cell.front().label) continue;
+                if (!has_passed(judgements[neighbour.index]) || label == last || label == cell.front().label) continue;
                 const auto near = std::ranges::find_if(cell, [&](const Cluster& each) {
                     return cell.size() == 1 ||
                            squared_distance(positions[each.index], positions[neighbour.index]) < least;
@@ -334,6 +432,74 @@ PointCloud marked(const PointCloud& cloud, std::span<const u32> index_of_row, st
     return result;
 }
 
+/// What the components of all positions are like.
+struct Outliers {
+    Array<u8> is_outlier;  ///< by position
+    std::size_t largest = 0;  ///< positions of the largest component
+    std::size_t components = 0;  ///< kept ones
+    double removed_area = 0;  ///< share of the area of positions in a surface
+};
+
+Outliers outliers_of(const Neighbourhoods& all, std::span<const Judgement> judgements, double radius, double most,
+                     double share, Context& context) {
+    const std::size_t count = judgements.size();
+    DisjointSets sets(count);
+    unite_neighbours(all, judgements, most, sets, context);
+    context.progress(0.9);
+    unite_groups(all, judgements, radius, sets, context);
+    const Components components(sets, count);
+    // By component. A position stands for an area in proportion to the square of its mean distance.
+    std::vector<double> area(count, 0);
+    std::vector<u32> scattered(count, 0);
+    double whole = 0;
+    const auto area_of = [&](std::size_t i) {
+        return judgements[i].is_in_surface && judgements[i].is_usable() ? all.means[i] * all.means[i] : 0;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        area[components.label[i]] += area_of(i);
+        scattered[components.label[i]] += judgements[i].is_scattered;
+        whole += area_of(i);
+    }
+    const u32 largest = components.largest();
+    Outliers found;
+    found.largest = components.size[largest];
+    const std::size_t fewest = std::min<std::size_t>(found.largest, all.each + 1);
+    std::vector<bool> is_kept(count, false);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t size = components.size[i];
+        const bool is_large =
+            static_cast<double>(size) >= share * static_cast<double>(count) || (whole > 0 && area[i] >= share * whole);
+        is_kept[i] = size >= std::max<std::size_t>(fewest, 1) && is_large && 2 * scattered[i] <= size;
+        found.components += is_kept[i];
+    }
+    if (found.components == 0 && static_cast<double>(found.largest) >= share * static_cast<double>(count)) {
+        is_kept[largest] = true;  // all are scattered
+        found.components = 1;
+    }
+    found.is_outlier.resize(count);
+    double removed = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        found.is_outlier[i] = !is_kept[components.label[i]];
+        if (found.is_outlier[i] != 0) removed += area_of(i);
+    }
+    found.removed_area = whole > 0 ? removed / whole : 0;
+    return found;
+}
+
+void doubt_share(const OutlierRemovalResult& result, std::size_t points, double removed_area, Context& context) {
+    const double share = static_cast<double>(result.removed) / static_cast<double>(points);
+    if (share > doubtful_share)
+        context.doubt(fmt::format(
+            "{} of {} points are outliers ({:.0f} %); if they belong to the object, raise factor or radius, or lower "
+            "min-component",
+            result.removed, points, 100 * share));
+    else if (removed_area > doubtful_share)
+        context.doubt(fmt::format(
+            "the {} outliers cover {:.0f} % of the area of all points that lie in a surface; if they belong to the "
+            "object, raise radius, or lower min-component",
+            result.removed, 100 * removed_area));
+}
+
 }  // namespace
 
 OutlierRemovalResult outlier_removal(const PointCloud& cloud, const OutlierRemovalParams& params, Context& context) {
@@ -343,58 +509,57 @@ OutlierRemovalResult outlier_removal(const PointCloud& cloud, const OutlierRemov
     const double radius =
         params.radius.in() == Length::In::spacing ? params.radius.amount() * all.spacing : params.radius.value();
     const double share = params.min_component.value();
-    const bool connected = share > 0;
+    const bool by_components = share > 0, by_ratio = by_components && params.method == Method::statistical;
 
     OutlierRemovalResult result;
-    result.limit = params.method == Method::statistical ? statistical_limit(all, params.factor, connected) : radius;
-    const Array<State> states = states_of(all, result.limit, connected, context);
-    context.progress(0.85);
-    Array<u8> is_outlier(positions);
-    std::size_t largest = 0;
-    if (connected) {
-        DisjointSets sets(positions);
-        unite_neighbours(all, states, result.limit, radius, sets, context);
-        context.progress(0.9);
-        unite_groups(all, states, std::max(result.limit, radius), sets, context);
-        const Components components(sets, positions);
-        largest = components.size[components.largest()];
-        const std::size_t fewest = std::min<std::size_t>(largest, params.neighbours + std::size_t(1));
-        const auto is_kept = [&](std::size_t size) {
-            return size >= fewest && static_cast<double>(size) >= share * static_cast<double>(positions);
-        };
-        for (std::size_t i = 0; i < positions; ++i) {
-            is_outlier[i] = !is_kept(components.size[components.label[i]]);
-            result.components += components.size[i] > 0 && is_kept(components.size[i]);
-        }
+    Array<u8> is_suspect(positions);
+    if (by_ratio) {
+        std::vector<double> ratios = log_ratios(all, context);
+        result.log_limit = robust_limit(ratios, params.factor);
+        std::ranges::transform(ratios, is_suspect.begin(), [&](double ratio) { return u8(ratio > result.log_limit); });
     } else {
-        for (std::size_t i = 0; i < positions; ++i) is_outlier[i] = states[i] != State::passed;
+        result.limit = params.method == Method::statistical ? statistical_limit(all, params.factor) : radius;
+        std::ranges::transform(all.distances, is_suspect.begin(),
+                               [&](double distance) { return u8(distance > result.limit); });
+    }
+    context.progress(0.83);
+    Array<Judgement> judgements(positions);
+    Outliers found;
+    if (by_components) {
+        judgements = judged(all, is_suspect, context);
+        cut_off_scattered(all, judgements, context);
+        context.progress(0.87);
+        found = outliers_of(all, judgements, radius, by_ratio ? infinite : links_per_radius * radius, share, context);
+        result.components = found.components;
+    } else {
+        found.is_outlier = is_suspect;
     }
 
     const std::span<const u32> index_of_row = all.tree.index_of_row();
     for (u32 row = 0; row < cloud.size(); ++row) {
         const u32 index = index_of_row[row];
-        result.suspects += states[index] != State::passed;
-        result.hovering += states[index] == State::hovering;
-        if (!is_outlier[index]) result.kept.push_back(row);
+        result.suspects += is_suspect[index];
+        result.hovering += judgements[index].is_hovering;
+        result.scattered += judgements[index].is_cut_off;
+        if (found.is_outlier[index] == 0) result.kept.push_back(row);
     }
     result.removed = cloud.size() - result.kept.size();
-    if (!params.mark) require_kept(result.kept.size(), cloud.size(), params, result.limit, largest, positions);
-    if (static_cast<double>(result.removed) > doubtful_share * static_cast<double>(cloud.size()))
-        context.doubt(fmt::format(
-            "{} of {} points are outliers ({:.0f} %); if they belong to the object, raise factor or radius, or lower "
-            "min-component",
-            result.removed, cloud.size(),
-            100 * static_cast<double>(result.removed) / static_cast<double>(cloud.size())));
-    result.points = params.mark           ? marked(cloud, index_of_row, is_outlier, context)
+    if (!params.mark) require_kept(result.kept.size(), cloud.size(), params, result.limit, found.largest, positions);
+    doubt_share(result, cloud.size(), found.removed_area, context);
+    result.points = params.mark           ? marked(cloud, index_of_row, found.is_outlier, context)
                     : result.removed == 0 ? cloud
                                           : gather(cloud, result.kept);
 
     context.metric("kept", static_cast<double>(result.kept.size()));
     context.metric("removed", static_cast<double>(result.removed));
     context.metric("suspects", static_cast<double>(result.suspects));
-    context.metric("limit", result.limit, Unit::length);
-    if (connected) {
+    if (by_ratio)
+        context.metric("log-limit", result.log_limit, Unit::number);
+    else
+        context.metric("limit", result.limit, Unit::length);
+    if (by_components) {
         context.metric("hovering", static_cast<double>(result.hovering));
+        context.metric("scattered", static_cast<double>(result.scattered));
         context.metric("components", static_cast<double>(result.components));
     }
     context.progress(1);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// outlier-removal against an implementation of its header's four rules that compares all pairs of points.
+/// outlier-removal against an implementation of its header's rules that compares all pairs of points.
 #include <gmock/gmock.h>
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -40,20 +41,11 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
 
     double limit = params.radius.value();
     if (params.method == Method::statistical) {
-        limit = std::numeric_limits<double>::infinity();
-        for (std::size_t passing = 0;;) {
-            std::vector<double> passed;
-            for (const double d : distances)
-                if (d <= limit) passed.push_back(d);
-            if (passed.size() == passing) break;
-            passing = passed.size();
-            double mean = 0, squares = 0;
-            for (const double d : passed) mean += d / static_cast<double>(passing);
-            for (const double d : passed) squares += (d - mean) * (d - mean);
-            limit = mean + params.factor * std::sqrt(squares / std::max(1.0, static_cast<double>(passing) - 1));
-            limit *= 1 + 1e-12;
-            if (params.min_component.value() == 0) break;
-        }
+        double mean = 0, squares = 0;
+        for (const double d : distances) mean += d / static_cast<double>(rows);
+        for (const double d : distances) squares += (d - mean) * (d - mean);
+        limit = mean + params.factor * std::sqrt(squares / std::max(1.0, static_cast<double>(rows) - 1));
+        limit *= 1 + 1e-12;
     }
     std::vector<bool> result(rows);
     for (std::size_t row = 0; row < rows; ++row) result[row] = distances[row] > limit;
@@ -68,8 +60,12 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
     std::vector<bool> is_suspect;
     for (const auto& [position, suspect] : suspects) positions.push_back(position), is_suspect.push_back(suspect);
     const std::size_t size = positions.size();
+    const auto larger_middle = [](std::vector<double> values) {
+        std::ranges::sort(values);
+        return values[values.size() / 2];
+    };
     std::vector<std::vector<std::size_t>> nearest(size);
-    std::vector<bool> hovers(size, false), in_surface(size);
+    std::vector<double> means(size, 0), around_means(size), variations(size), heights(size);
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t j = 0; j < size; ++j)
             if (j != i) nearest[i].push_back(j);
@@ -78,50 +74,121 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
             return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
         });
         nearest[i].resize(std::min<std::size_t>(nearest[i].size(), params.neighbours));
-        in_surface[i] = !is_suspect[i];
-        if (!is_suspect[i] || nearest[i].empty()) continue;
         std::vector<Vec3> around;
-        double mean = 0;
         for (const std::size_t j : nearest[i]) {
             around.push_back(positions[j] - positions[i]);
-            mean += around.back().norm() / static_cast<double>(nearest[i].size());
+            means[i] += around.back().norm();
         }
+        means[i] /= static_cast<double>(nearest[i].size());
         const Scatter scatter = scatter_of(around);
-        hovers[i] = around.front().norm() > 0.6 * mean && std::abs(scatter.normal.dot(scatter.centroid)) > 0.6 * mean;
+        heights[i] = std::abs(scatter.normal.dot(scatter.centroid));
         around.push_back(Vec3::Zero());
-        in_surface[i] = !hovers[i] && scatter_of(around).surface_variation <= 0.0125;
+        variations[i] = scatter_of(around).surface_variation;
+    }
+    std::vector<double> flat_means, logs(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        std::vector<double> others;
+        for (const std::size_t j : nearest[i]) others.push_back(means[j]);
+        around_means[i] = larger_middle(others);
+        logs[i] = std::log(means[i] / around_means[i]);
+        if (variations[i] <= 0.05) flat_means.push_back(means[i]);
+    }
+    if (params.method == Method::statistical) {
+        const double middle = larger_middle(logs);
+        std::vector<double> deviations;
+        for (const double ratio : logs) deviations.push_back(std::abs(ratio - middle));
+        const double most = std::max(0.25, middle + params.factor * 1.4826 * larger_middle(deviations));
+        for (std::size_t i = 0; i < size; ++i) is_suspect[i] = logs[i] > most;
+    }
+    const double usual = larger_middle(flat_means.empty() ? means : flat_means), sparse = 2.5 * usual;
+
+    std::vector<bool> hovers(size), scattered(size), in_surface(size), cut_off(size, false), member(size, false);
+    for (std::size_t i = 0; i < size; ++i) {
+        const double first = distance(positions[i], positions[nearest[i][0]]);
+        hovers[i] = is_suspect[i] && means[i] > usual && first > 0.6 * means[i] && heights[i] > 0.6 * means[i];
+        scattered[i] = means[i] > sparse && variations[i] > 0.05;
+        in_surface[i] =
+            (!is_suspect[i] && means[i] <= sparse) || (variations[i] <= 0.0125 && heights[i] <= 0.5 * around_means[i]);
     }
     const auto among = [&](std::size_t i, std::size_t j) {
         return std::ranges::find(nearest[j], i) != nearest[j].end();
     };
-    const auto connected = [&](std::size_t i, std::size_t j) {
-        if (hovers[i] || hovers[j]) return false;
-        const double d = distance(positions[i], positions[j]);
-        if (!is_suspect[i] && !is_suspect[j] && d <= std::max(limit, params.radius.value())) return true;
-        if (d > 2 * limit) return false;
-        return (among(i, j) && among(j, i)) || (in_surface[i] && in_surface[j] && (among(i, j) || among(j, i)));
+    const auto components = [&](const auto& connected) {
+        std::vector<std::size_t> component(size, size);
+        std::size_t count = 0;
+        for (std::size_t seed = 0; seed < size; ++seed) {
+            if (component[seed] != size) continue;
+            std::vector<std::size_t> open{seed};
+            component[seed] = count;
+            while (!open.empty()) {
+                const std::size_t i = open.back();
+                open.pop_back();
+                for (std::size_t j = 0; j < size; ++j)
+                    if (component[j] == size && connected(i, j)) component[j] = count, open.push_back(j);
+            }
+            ++count;
+        }
+        return component;
     };
-    std::vector<std::size_t> component(size, size), sizes;
-    for (std::size_t seed = 0; seed < size; ++seed) {
-        if (component[seed] != size) continue;
-        std::vector<std::size_t> open{seed};
-        component[seed] = sizes.size();
-        sizes.push_back(0);
-        while (!open.empty()) {
-            const std::size_t i = open.back();
-            open.pop_back();
-            ++sizes.back();
-            for (std::size_t j = 0; j < size; ++j)
-                if (component[j] == size && connected(i, j)) component[j] = sizes.size() - 1, open.push_back(j);
+    for (std::size_t i = 0; i < size; ++i) {
+        const auto others = std::ranges::count_if(nearest[i], [&](std::size_t j) { return bool(scattered[j]); });
+        member[i] = scattered[i] && !hovers[i] && 2 * (static_cast<std::size_t>(others) + 1) > nearest[i].size() + 1;
+    }
+    const std::vector<std::size_t> cluster =
+        components([&](std::size_t i, std::size_t j) { return member[i] && member[j] && among(i, j) && among(j, i); });
+    std::vector<double> members(size, 0), linked(size, 0);
+    for (std::size_t i = 0; i < size; ++i) {
+        if (!member[i]) continue;
+        ++members[cluster[i]];
+        linked[cluster[i]] +=
+            std::ranges::any_of(nearest[i], [&](std::size_t j) { return !scattered[j] && !hovers[j] && among(i, j); });
+    }
+    for (std::size_t i = 0; i < size; ++i) cut_off[i] = member[i] && linked[cluster[i]] < 0.15 * members[cluster[i]];
+
+    const auto usable = [&](std::size_t i) { return !hovers[i] && !cut_off[i]; };
+    const auto connects = [&](std::size_t i) {
+        return usable(i) && (!is_suspect[i] || means[i] <= sparse || in_surface[i]);
+    };
+    std::vector<std::size_t> component = components([&](std::size_t i, std::size_t j) {
+        if (!connects(i) || !connects(j)) return false;
+        const double d = distance(positions[i], positions[j]);
+        if (!is_suspect[i] && !is_suspect[j] && d <= params.radius.value()) return true;
+        if (d > 6 * std::min(means[i], means[j])) return false;
+        if (params.method == Method::radius && d > 2 * limit) return false;
+        const bool of_i = among(j, i), of_j = among(i, j);
+        return (of_i && of_j) || (of_i && in_surface[i]) || (of_j && in_surface[j]);
+    });
+    for (std::size_t i = 0; i < size; ++i) {
+        if (connects(i) || !usable(i)) continue;
+        for (const std::size_t j : nearest[i]) {
+            const double d = distance(positions[i], positions[j]);
+            const bool is_near =
+                d <= 6 * std::min(means[i], means[j]) && (params.method == Method::statistical || d <= 2 * limit);
+            if (!connects(j) || !is_near || !among(i, j)) continue;
+            component[i] = component[j];
+            break;
         }
     }
-    const std::size_t fewest = std::min<std::size_t>(std::ranges::max(sizes), params.neighbours + 1);
-    std::set<Vec3, decltype(before)> removed(before);
+    std::vector<double> sizes(size, 0), areas(size, 0), scatters(size, 0);
+    double whole = 0;
     for (std::size_t i = 0; i < size; ++i) {
-        const std::size_t members = sizes[component[i]];
-        if (members < fewest || static_cast<double>(members) < params.min_component.value() * static_cast<double>(size))
-            removed.insert(positions[i]);
+        const double area = in_surface[i] && usable(i) ? means[i] * means[i] : 0;
+        ++sizes[component[i]];
+        areas[component[i]] += area;
+        scatters[component[i]] += scattered[i];
+        whole += area;
     }
+    const double largest = std::ranges::max(sizes), share = params.min_component.value();
+    const double fewest = std::min(largest, params.neighbours + 1.0);
+    std::vector<bool> kept(size);
+    for (std::size_t c = 0; c < size; ++c)
+        kept[c] = sizes[c] >= std::max(1.0, fewest) && 2 * scatters[c] <= sizes[c] &&
+                  (sizes[c] >= share * static_cast<double>(size) || (whole > 0 && areas[c] >= share * whole));
+    if (std::ranges::count(kept, true) == 0 && largest >= share * static_cast<double>(size))
+        kept[static_cast<std::size_t>(std::ranges::max_element(sizes) - sizes.begin())] = true;
+    std::set<Vec3, decltype(before)> removed(before);
+    for (std::size_t i = 0; i < size; ++i)
+        if (!kept[component[i]]) removed.insert(positions[i]);
     for (std::size_t row = 0; row < rows; ++row) result[row] = removed.contains(cloud.positions[row]);
     return result;
 }
@@ -191,10 +258,10 @@ TEST(OutlierRemovalLaws, ThreadsAndOrder_DoNotMatter) {
     for (const unsigned threads : {2u, 5u}) {
         const OutlierRemovalResult other = clean(cloud, {}, threads);
         EXPECT_EQ(other.kept, one.kept);
-        EXPECT_EQ(other.limit, one.limit);
+        EXPECT_EQ(other.log_limit, one.log_limit);
     }
     const OutlierRemovalResult turned = clean(shuffled(cloud, 9));
-    EXPECT_EQ(turned.limit, one.limit);
+    EXPECT_EQ(turned.log_limit, one.log_limit);
     const auto sorted = [](const PointCloud& points) {
         std::vector<Vec3> result(points.positions.begin(), points.positions.end());
         std::ranges::sort(result, [](const Vec3& a, const Vec3& b) {
