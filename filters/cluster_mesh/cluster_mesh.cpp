@@ -23,12 +23,12 @@
 #include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/finished_mesh.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
-#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 
 namespace scanmill {

@@ -15,9 +15,9 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/handles.hpp"
-#include "scanmill/geometry/mesh/sides.hpp"
 
 namespace scanmill {
 
@@ -150,7 +150,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     const std::size_t added_triangles = filled.triangles.size() - filled.kept,
                       added_points = filled.positions.size() - mesh.positions.size();
     result.mesh = with_columns(mesh, std::move(filled), context);
-    if (const std::size_t turned = face_outwards(result.mesh, context); turned > 0)
+    if (const std::size_t turned = params.outwards ? face_outwards(result.mesh, context) : 0; turned > 0)
         context.warn(fmt::format("{} turned: the closed surface faced inwards",
                                  count_text(turned, "triangle was", "triangles were")));
     const double share = whole > 0 ? result.area / whole : 0;

@@ -24,6 +24,8 @@ struct FillHolesParams {
     bool fair = true;
     /// If loops cannot be closed one by one, closes the surface as a whole, unless a limit leaves other loops open.
     bool together = true;
+    /// Turns closed components that face inwards.
+    bool outwards = true;
 };
 
 struct FillHolesResult {

@@ -178,8 +178,8 @@ struct Component {
     /// the normals of a closed component face outwards.
     double relative_flux() const {
         const Vec3 centroid = moment / area;
-        const double size = std::sqrt(std::max(0.0, squares / area - centroid.squaredNorm()));
-        return size > 0 ? (flux - normals.dot(centroid)) / (area * size) : 0;
+        const double radius = std::sqrt(std::max(0.0, squares / area - centroid.squaredNorm()));
+        return radius > 0 ? (flux - normals.dot(centroid)) / (area * radius) : 0;
     }
     /// Whether the flux shows its inside.
     bool is_clear() const { return normals.norm() <= open_share * area && std::abs(relative_flux()) > least_flux; }

@@ -24,11 +24,11 @@
 #include "scanmill/data/point_tree.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/handles.hpp"
-#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
@@ -171,6 +171,7 @@ Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     params.max_edges = most_crack_edges;
     params.fair = false;
     params.together = false;
+    params.outwards = false;
     FillHolesResult filled = fill_holes(mesh, params, own);
     mesh.positions = filled.mesh.positions;
     mesh.triangles = filled.mesh.triangles;

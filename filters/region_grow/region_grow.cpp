@@ -18,10 +18,10 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
-#include "scanmill/geometry/mesh/sides.hpp"
 
 namespace scanmill {
 
@@ -259,7 +259,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     if (!given.doubtful.empty()) orient_like_normals(surface, components, given.doubtful);
 
     FinishedMesh finished = finish_mesh(cloud, surface);
-    face_outwards(finished.mesh, context);
+    if (!oriented && given.doubtful.empty()) face_outwards(finished.mesh, context);
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     feature_params.noise = params.noise;

@@ -17,11 +17,10 @@
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
-#include "scanmill/geometry/mesh/handles.hpp"
-#include "scanmill/geometry/mesh/sides.hpp"
 #include "scanmill/geometry/spatial/cell_grid.hpp"
 
 namespace scanmill {
@@ -503,7 +502,6 @@ RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Contex
             "`fill-holes`",
             count_text(after.boundary_loops, "boundary loop", "boundary loops"),
             count_text(result.split_edges, "edge had", "edges had")));
-    for (std::string& doubt : doubts_about_handles(result.mesh)) context.doubt(std::move(doubt));
     context.metric("oriented", static_cast<double>(result.oriented));
     context.metric("stitched", static_cast<double>(result.stitched));
     context.metric("split-vertices", static_cast<double>(result.split_vertices));

@@ -65,8 +65,8 @@ struct RepairResult {
 /// Post: at most two triangles at an edge, oriented equally; one fan at a vertex; no triangle with a repeated vertex;
 ///       no unused vertex. A second run with the same parameters and `min_component` 0 changes no triangle, except that
 ///       it joins and splits the same vertices again.
-/// Doubts its result if more than 5 % of the area is removed (duplicates do not count), if a mesh without boundary has
-/// a boundary afterwards, and if it has handles that the object hardly has (see handles.hpp).
+/// Doubts its result if more than 5 % of the area is removed (duplicates do not count), or if a mesh without boundary
+/// has a boundary afterwards.
 ///
 /// Deterministic: serial, the same bytes on every machine. Cost: O(n log n) time, about 500 bytes per triangle. An
 /// oriented manifold that needs no repair is returned in linear time, without a copy.

@@ -41,7 +41,7 @@ TEST(DecimateRefuses, MeshWithoutTriangles) {
 TEST(DecimateRefuses, ThreeTrianglesAtAnEdge) {
     EXPECT_THAT(
         refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}})),
-        HasSubstr("in 3 triangles, 0, 1 and 2"));
+        HasSubstr("in 3 triangles, among them 0, 1 and 2"));
 }
 
 TEST(DecimateRefuses, TwoFansAtAVertex) {

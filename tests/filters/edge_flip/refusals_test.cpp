@@ -28,7 +28,7 @@ TEST(EdgeFlipRefuses, AnEdgeInThreeTriangles) {
     const Error error =
         refusal(mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
     EXPECT_THAT(error.sentence(), AllOf(HasSubstr("between vertex 0 (0, 0, 0) and vertex 1 (1, 0, 0)"),
-                                        HasSubstr("in 3 triangles, 0, 1 and 2")));
+                                        HasSubstr("in 3 triangles, among them 0, 1 and 2")));
     EXPECT_FALSE(error.hint().empty());
 }
 

@@ -17,8 +17,9 @@ TEST(FeaturesRefuse, NoTriangles) { EXPECT_THAT(features_refusal(TriangleMesh{})
 TEST(FeaturesRefuse, ThreeTrianglesAtAnEdge_AndNameIt) {
     const TriangleMesh three =
         mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
-    EXPECT_THAT(features_refusal(three), AllOf(HasSubstr("between vertex 0 (0, 0, 0) and vertex 1 (1, 0, 0)"),
-                                               HasSubstr("in 3 triangles, 0, 1 and 2"), HasSubstr("with more: 1")));
+    EXPECT_THAT(features_refusal(three),
+                AllOf(HasSubstr("between vertex 0 (0, 0, 0) and vertex 1 (1, 0, 0)"),
+                      HasSubstr("in 3 triangles, among them 0, 1 and 2"), HasSubstr("in more: 1")));
 }
 
 TEST(FeaturesRefuse, NeighboursOrientedDifferently_AndNameThem) {

@@ -416,7 +416,7 @@ TEST(EditableMeshRefuses, AVertexWithSeveralFans) {
 
 TEST(EditableMeshRefuses, AnEdgeInThreeTriangles) {
     const Error error = refusal(abstract_mesh(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
-    EXPECT_THAT(error.sentence(), HasSubstr("in 3 triangles, 0, 1 and 2"));
+    EXPECT_THAT(error.sentence(), HasSubstr("in 3 triangles, among them 0, 1 and 2"));
     EXPECT_FALSE(error.hint().empty());
 }
 

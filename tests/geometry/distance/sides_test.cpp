@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/geometry/mesh/sides.hpp"
+#include "scanmill/geometry/distance/sides.hpp"
 
 #include <gmock/gmock.h>
 
