@@ -125,7 +125,7 @@ TEST(GlbRefuses, MoreThan32BitSizes_BeforeReadingThePoints) {
     const Vec3 one(1, 2, 3);
     cloud.positions = Buffer<Vec3>(nullptr, &one, 400'000'000);  // only counted
     EXPECT_THAT(sentence_of([&] { Container glb(cloud); }),
-                HasSubstr("needs 4800000000 bytes; a GLB file holds at most 4294967295"));
+                HasSubstr("needs 4800000000 bytes; GLB allows at most 4294967295"));
 }
 
 TEST(GlbWriter, EqualValues_GiveEqualBytes) {

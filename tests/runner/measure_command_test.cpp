@@ -271,7 +271,7 @@ TEST_F(MeasureCommand, TruthIsNeverGuessed) {
                   "measure\n");
     const ProgramResult unsaid = scanmill({"check", "w.yaml"});
     EXPECT_EQ(unsaid.exit_code, 2);
-    EXPECT_THAT(unsaid.err + unsaid.out, ContainsRegex("mesh or points .*port 'truth'.* `in:"));
+    EXPECT_THAT(unsaid.err + unsaid.out, ContainsRegex("port 'truth'.* mesh or points .*`in:"));
     folder_.write(
         "w.yaml",
         "scanmill: 1\nname: w\ninputs:\n  scan: points\nsteps:\n  - delaunay:\n  - alpha-solid:\n  - measure:\n"
