@@ -155,7 +155,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
                                  count_text(turned, "triangle was", "triangles were")));
     const double share = whole > 0 ? result.area / whole : 0;
     report_doubts(result, diagonal, too_long, share, context);
-    for (std::string& doubt : doubts_about_handles(result.mesh)) context.doubt(std::move(doubt));
+    for (std::string& doubt : doubts_about_handles(result.mesh, context)) context.doubt(std::move(doubt));
 
     context.metric("filled", static_cast<double>(result.filled));
     context.metric("left", static_cast<double>(result.beyond_limits + result.failed));

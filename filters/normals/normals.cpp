@@ -531,11 +531,12 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
             for (u32 i = 0; i < sides.size(); ++i)
                 if (evidence.sides[i] != 0) sides[i] = evidence.sides[i];
             if (const std::size_t count = components.facing_inwards(evidence, sides); count > 0)
-                context.warn(fmt::format(
-                    "the column 'normal' faces inwards at {} of {} positions: surfaces from these "
-                    "normals are inside out, unless the scan is that of a room; drop the column while reading to "
-                    "orient the points without it",
-                    count, positions.size()));
+                context.warn(
+                    fmt::format("the column 'normal' faces inwards at {} of {} positions: surfaces from these "
+                                "normals are inside out, unless the scan is that of a room or a cavity; drop the "
+                                "column while reading to "
+                                "orient the points without it",
+                                count, positions.size()));
         }
         const std::vector<u8> beside = contradicting(field, sides, context);
         for (u32 i = 0; i < sides.size(); ++i) doubtful[i] |= beside[i];

@@ -388,6 +388,7 @@ void unite_groups(const Neighbourhoods& all, std::span<const Judgement> judgemen
         context.check_cancelled();
         NeighbourBuffer buffer;
         for (std::size_t i = begin; i < end; ++i) {
+            context.check_cancelled();
             const std::span<const Cluster> cell(&clusters[begins[i]], begins[i + 1] - begins[i]);
             u32 last = cell.front().label;
             for (const Neighbour& neighbour :

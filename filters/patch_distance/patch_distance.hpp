@@ -25,7 +25,7 @@ struct PatchDistanceResult {
 /// Newton's method (PatchSurface::foot()) starts at the nearest point of a tessellation with 2 segments per edge. If
 /// two parts of the surface are equally near within the error of that tessellation, the result may be the distance to
 /// either of them. Near ends of creases, and between faces that have no tetrahedra between them, the result is the
-/// distance to the tessellation. On an open surface, the side of the nearest triangle then gives its sign.
+/// distance to the tessellation. On an open surface, such a distance has the sign of the nearest triangle's side.
 ///
 /// Pre:  finite points in the frame of the patches. Throws Error otherwise, if `points` or `patches` is empty, if
 ///       tetrahedra of a triangle are missing, or if every point is far from the surface.

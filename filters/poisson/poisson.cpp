@@ -368,7 +368,7 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     const auto is_invented = [&](u32 vertex) {
         return tree.nearest_to(result.mesh.positions[vertex], 1, buffer).front().squared > reach * reach;
     };
-    for (std::string& doubt : doubts_about_handles(result.mesh, is_invented)) context.doubt(std::move(doubt));
+    for (std::string& doubt : doubts_about_handles(result.mesh, context, is_invented)) context.doubt(std::move(doubt));
 
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
     context.metric("trimmed", static_cast<double>(result.trimmed));

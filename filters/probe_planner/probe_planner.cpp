@@ -65,7 +65,8 @@ Settings settings_of(const ProbePlannerParams& params) {
     settings.error = require_length("scanner-error", params.scanner_error, true);
     if (!(settings.error < probe.radius))
         throw Error(
-            "scanner-error is {} u and radius is {} u: the ball must be larger than the error to meet the edge first",
+            "scanner-error is {} u and radius is {} u: unless the radius is larger, a face may be touched before the "
+            "edge",
             number_text(settings.error), number_text(probe.radius))
             .hint("use a larger ball, or a finer scan and smaller voxels with a smaller scanner-error");
     probe.clearance = length_or("clearance", params.clearance, probe.radius, true);

@@ -114,7 +114,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
             "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));
     for (std::string& doubt : doubts_about_surface(result.mesh, result.noise)) context.doubt(std::move(doubt), "mesh");
-    for (std::string& doubt : doubts_about_handles(result.mesh)) context.doubt(std::move(doubt), "mesh");
+    for (std::string& doubt : doubts_about_handles(result.mesh, context)) context.doubt(std::move(doubt), "mesh");
 }
 
 void report(const SculptResult& result, std::size_t cells_before, Context& context) {

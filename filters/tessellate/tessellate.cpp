@@ -358,7 +358,8 @@ TriangleMesh without_equal_corners(const TriangleMesh& mesh) {
     result.sharp_edges = std::move(sharp);
     result.face_columns = mesh.face_columns.gather(rows);
     result = without_unused_vertices(result);
-    return topology(mesh).closed && !topology(result).closed ? mesh : result;
+    const MeshTopology before = topology(mesh), after = topology(result);
+    return (before.genus && !after.genus) || (before.closed && !after.closed) ? mesh : result;
 }
 
 }  // namespace scanmill

@@ -31,8 +31,8 @@ struct TessellateParams {
 /// gap, or above one of the triangles, whose grid then begins there. Where the complex has no tetrahedra beside an
 /// edge, a straight line closes the gap between the two faces.
 ///
-/// No triangle has two corners at one position. Where samples coincide, their vertices are joined, unless this would
-/// open a closed mesh.
+/// Where samples coincide, their vertices are joined, so that no triangle has two corners at one position. If that
+/// would open a closed mesh, or make a manifold non-manifold, no vertices are joined.
 ///
 /// Vertices: those of the mesh that are used, then edge by edge, then triangle by triangle. Columns:
 /// - Vertex `normal`: unit vector along the gradient; zero where the gradient is. On creases it is the mean of both

@@ -97,7 +97,7 @@ std::string workflow_file(const std::string& file_or_name, const Warn& warn) {
     const std::vector<std::string> names = ready_names();
     throw Error("'{}' cannot be opened; expected a workflow file or the name of a ready workflow{}", file_or_name,
                 did_you_mean(name, names))
-        .hint("ready workflows and batches: " + enumerated(names));
+        .hint(names.empty() ? "give the path of a workflow file" : "ready workflows and batches: " + enumerated(names));
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,

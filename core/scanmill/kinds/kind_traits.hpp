@@ -211,7 +211,7 @@ template <class T>
 Kind kind_of() {
     return Kind(kind_info<T>);
 }
-// Instantiated in the source files with the traits.
+// Each kind_of<Type>() is instantiated in the source file that defines KindTraits<Type>.
 #define SCANMILL_DECLARE_KIND(Type) \
     struct Type;                    \
     extern template Kind kind_of<Type>();

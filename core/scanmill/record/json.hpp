@@ -359,7 +359,7 @@ struct FieldsForm {
                 if (field.is_flat) return JsonForm<Member>::write_members(json, member);
             if (field.is_optional && is_default(field, member)) return;
             Json& value = json[field.name];
-            if (field.applies && !field.applies(object)) return;  // null
+            if (field.applies && !field.applies(object)) return;  // `value` stays null
             if constexpr (requires { JsonByName<Member>::write(member); })
                 if (field.is_by_name) {
                     value = JsonByName<Member>::write(member);

@@ -44,7 +44,7 @@ inline constexpr std::array<Verdict, 7> all_verdicts{Verdict::failed,   Verdict:
 enum class Effect { regression, improvement, listed };
 constexpr std::array<std::string_view, 3> names_of(const Effect*) { return {"regression", "improvement", "listed"}; }
 
-/// A number that differs between the runs, in this run's unit of lengths.
+/// A number that differs between the accepted run and the compared one. Both values are in the unit `lengths`.
 struct MetricChange {
     std::string source, metric;
     Unit unit = Unit::number;

@@ -94,10 +94,12 @@ fs::path failed_of(const fs::path& folder, const fs::path& file) {
 void remove_failed(const fs::path& folder, const fs::path& file) {
     const fs::path failed = failed_of(folder, file);
     std::error_code ignored;
+    bool was_there = false;
     for (const fs::path& each : {failed, description_of(failed)})
         if (const fs::file_status status = fs::symlink_status(each, ignored);
             fs::is_regular_file(status) || fs::is_symlink(status))
-            fs::remove(each, ignored);
+            was_there = fs::remove(each, ignored) || was_there;
+    if (!was_there) return;
     for (fs::path part = failed.parent_path(); part != folder; part = part.parent_path()) {
         if (!fs::is_directory(fs::symlink_status(part, ignored))) continue;
         fs::remove(part, ignored);  // fails if the folder is not empty

@@ -52,7 +52,7 @@ struct PlannedStep {
     std::vector<PlannedExpectation> expectations;
     /// Equal for steps with the same filter, parameters and upstream steps.
     std::string structure_key;
-    std::string file{};  ///< contains `position`; empty: the workflow file
+    std::string file{};  ///< the file to which `position` refers; if empty, the workflow file
 };
 
 struct PlannedOutput {

@@ -65,6 +65,26 @@ TEST(FaceOutwards, BoxesNestedButBodiesApart_BothFaceOutwards) {
                 test::signed_volume(torus) + test::signed_volume(ball), 1e-9);
 }
 
+TEST(FaceOutwards, PartsThatTouch_FaceOutwardsWhicheverVertexIsFirst) {
+    // The small cube is in the corner of the L-shaped block, at its wall.
+    const TriangleMesh block = test::l_block(10);
+    for (u32 first = 0; first < 8; ++first) {
+        TriangleMesh cube = test::cube(2);
+        Array<Vec3> positions(cube.positions.begin(), cube.positions.end());
+        for (Vec3& p : positions) p += Vec3(10, 12, 2);
+        std::swap(positions[0], positions[first]);
+        Array<Triangle> triangles(cube.triangles.begin(), cube.triangles.end());
+        for (Triangle& t : triangles)
+            for (u32& v : t) v = v == 0 ? first : v == first ? 0 : v;
+        cube.positions = std::move(positions);
+        cube.triangles = std::move(triangles);
+        const double expected = test::signed_volume(block) + 8;
+        EXPECT_NEAR(volume_after(joined({block, cube})), expected, 1e-9) << first;
+        EXPECT_NEAR(volume_after(joined({block, reversed(cube)})), expected, 1e-9) << first;
+        EXPECT_NEAR(volume_after(joined({cube, cube})), 16, 1e-9) << "coincident";
+    }
+}
+
 TEST(FaceOutwards, OpenAndUnorientedComponentsStay) {
     Execution execution;
     TriangleMesh open = test::without_triangles(reversed(test::geodesic_sphere(1, 4)), {0});

@@ -19,6 +19,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+Execution& run() {
+    static Execution execution;
+    return execution;
+}
+std::vector<std::string> judged(const TriangleMesh& mesh, const std::function<bool(u32)>& is_invented = {}) {
+    return doubts_about_handles(mesh, run(), is_invented);
+}
+
 /// Whether the edges of the loop are edges of the mesh, and the mesh without them is one component.
 bool is_non_separating(const TriangleMesh& mesh, const HandleLoop& loop) {
     std::set<Edge> cut;
@@ -89,24 +97,25 @@ TriangleMesh box_with_hole(u32 size, u32 width) {
 TEST(HandleLoops, TorusHasTheLoopRoundItsTube) {
     const TriangleMesh mesh = test::torus(1, 0.4, 64, 24);
     const double round = 2 * std::numbers::pi * 0.4;
-    EXPECT_THAT(handle_loops(mesh, 0.98 * round, 100), IsEmpty());
-    const std::vector<HandleLoop> one = handle_loops(mesh, 1.2 * round, 100);
+    EXPECT_THAT(handle_loops(mesh, 0.98 * round, 100, run()), IsEmpty());
+    const std::vector<HandleLoop> one = handle_loops(mesh, 1.2 * round, 100, run());
     ASSERT_EQ(one.size(), 1u);
     EXPECT_NEAR(one[0].length, round, 0.02);
     EXPECT_TRUE(is_non_separating(mesh, one[0]));
-    EXPECT_EQ(handle_loops(mesh, 10, 100).size(), 1u) << "loops along the tube are longer at each of their vertices";
+    EXPECT_EQ(handle_loops(mesh, 10, 100, run()).size(), 1u)
+        << "loops along the tube are longer at each of their vertices";
 }
 
 TEST(HandleLoops, SurfacesWithoutHandlesHaveNone) {
-    EXPECT_THAT(handle_loops(test::cube(), 100, 100), IsEmpty());
-    EXPECT_THAT(handle_loops(test::geodesic_sphere(1, 8), 100, 100), IsEmpty());
-    EXPECT_THAT(handle_loops({}, 100, 100), IsEmpty());
+    EXPECT_THAT(handle_loops(test::cube(), 100, 100, run()), IsEmpty());
+    EXPECT_THAT(handle_loops(test::geodesic_sphere(1, 8), 100, 100, run()), IsEmpty());
+    EXPECT_THAT(handle_loops({}, 100, 100, run()), IsEmpty());
 }
 
 TEST(HandleLoops, HoleThroughABox_HasItsCircumferenceAndTheWayRoundItsWall) {
     const TriangleMesh mesh = box_with_hole(21, 3);
     ASSERT_EQ(topology(mesh).genus, 1);
-    const std::vector<HandleLoop> loops = handle_loops(mesh, 30, 100);
+    const std::vector<HandleLoop> loops = handle_loops(mesh, 30, 100, run());
     ASSERT_EQ(loops.size(), 2u);
     EXPECT_DOUBLE_EQ(loops[0].length, 4 * 3) << "round the hole";
     EXPECT_DOUBLE_EQ(loops[1].length, 2 * (9 + 1)) << "through the hole and round the box";
@@ -120,15 +129,15 @@ TEST(HandleLoops, RealModels_HaveLoopsThatDoNotSeparate) {
         if (!path) GTEST_SKIP() << test::missing_data(model.file);
         const Value value = read_file(*path).value;
         const TriangleMesh& mesh = *value.get<TriangleMesh>();
-        const std::vector<HandleLoop> loops = handle_loops(mesh, surface_box(mesh).diagonal(), 20);
+        const std::vector<HandleLoop> loops = handle_loops(mesh, surface_box(mesh).diagonal(), 20, run());
         EXPECT_GE(loops.size(), static_cast<std::size_t>(model.genus)) << model.file;
         for (const HandleLoop& loop : loops) EXPECT_TRUE(is_non_separating(mesh, loop)) << model.file;
     }
 }
 
 TEST(DoubtsAboutHandles, WideHandlesAreFine) {
-    EXPECT_THAT(doubts_about_handles(test::torus(1, 0.4, 64, 24)), IsEmpty());
-    EXPECT_THAT(doubts_about_handles(test::geodesic_sphere(1, 8)), IsEmpty());
+    EXPECT_THAT(judged(test::torus(1, 0.4, 64, 24)), IsEmpty());
+    EXPECT_THAT(judged(test::geodesic_sphere(1, 8)), IsEmpty());
 }
 
 /// `count` copies of the mesh beside each other.
@@ -148,30 +157,28 @@ TriangleMesh copies(const TriangleMesh& one, u32 count) {
 
 TEST(DoubtsAboutHandles, FewNarrowHandlesMayBeReal_ManyOnFewVerticesAreNot) {
     const TriangleMesh one = box_with_hole(21, 1);
-    EXPECT_THAT(doubts_about_handles(one), IsEmpty());
-    EXPECT_THAT(doubts_about_handles(copies(one, 2)), IsEmpty());
-    EXPECT_THAT(doubts_about_handles(copies(one, 3)),
-                ElementsAre(testing::AllOf(HasSubstr("genus 3"), HasSubstr("12 spacings"))));
+    EXPECT_THAT(judged(one), IsEmpty());
+    EXPECT_THAT(judged(copies(one, 2)), IsEmpty());
+    EXPECT_THAT(judged(copies(one, 3)), ElementsAre(testing::AllOf(HasSubstr("genus 3"), HasSubstr("12 spacings"))));
 }
 
 TEST(DoubtsAboutHandles, NarrowHandleThroughInventedSurfaceIsDoubtful_AWideOneIsNot) {
     const TriangleMesh narrow = box_with_hole(21, 1), wide = box_with_hole(41, 13);
     const auto all = [](u32) { return true; };
     const auto none = [](u32) { return false; };
-    EXPECT_THAT(doubts_about_handles(narrow, all),
-                ElementsAre(testing::AllOf(HasSubstr("genus 1"), HasSubstr("no point shows"))));
-    EXPECT_THAT(doubts_about_handles(narrow, none), IsEmpty());
-    EXPECT_THAT(doubts_about_handles(wide, all), IsEmpty());
+    EXPECT_THAT(judged(narrow, all), ElementsAre(testing::AllOf(HasSubstr("genus 1"), HasSubstr("no point shows"))));
+    EXPECT_THAT(judged(narrow, none), IsEmpty());
+    EXPECT_THAT(judged(wide, all), IsEmpty());
 }
 
 TEST(DoubtsAboutHandles, FilledFacesAreInvented) {
     TriangleMesh mesh = box_with_hole(21, 1);
     mesh.face_columns.add(Column("filled", 1, Buffer<u8>(Array<u8>(mesh.triangles.size(), u8(1)))));
-    EXPECT_THAT(doubts_about_handles(mesh), ElementsAre(HasSubstr("no point shows")));
+    EXPECT_THAT(judged(mesh), ElementsAre(HasSubstr("no point shows")));
 }
 
 TEST(DoubtsAboutHandles, OpenSurfacesAreNotJudged) {
-    EXPECT_THAT(doubts_about_handles(test::without_triangles(box_with_hole(21, 1), {0})), IsEmpty());
+    EXPECT_THAT(judged(test::without_triangles(box_with_hole(21, 1), {0})), IsEmpty());
 }
 
 }  // namespace

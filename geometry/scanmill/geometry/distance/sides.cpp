@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "scanmill/base/disjoint_sets.hpp"
@@ -15,6 +16,8 @@ namespace scanmill {
 namespace {
 
 constexpr double rounding = 1e-9;
+/// Depth of an inner point below its triangle, as a share of the triangle's size.
+constexpr double depth = 1e-6;
 
 /// A closed component.
 struct Shell {
@@ -25,10 +28,19 @@ struct Shell {
     double volume = 0, parts = 0;
     std::size_t around = 0;  ///< number of shells that enclose it
 
-    u32 lowest() const {
-        u32 vertex = triangles[0][0];
-        for (const Triangle& triangle : triangles) vertex = std::min(vertex, std::ranges::min(triangle));
-        return vertex;
+    /// A point just inside, below the middle of the largest triangle: not on a shell that only touches this one.
+    Vec3 inner_point(const TriangleMesh& mesh) const {
+        Vec3 normal = Vec3::Zero(), middle = mesh.positions[triangles[0][0]];
+        for (const auto& [a, b, c] : triangles) {
+            const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+            const Vec3 its = (q - p).cross(r - p);
+            if (!(its.squaredNorm() > normal.squaredNorm())) continue;
+            normal = its;
+            middle = p + ((q - p) + (r - p)) / 3;
+        }
+        const double twice_area = normal.norm();
+        if (!(twice_area > 0)) return middle;
+        return middle - normal * ((volume > 0 ? depth : -depth) * std::sqrt(twice_area) / twice_area);
     }
     bool faces_wrong() const { return std::abs(volume) > rounding * parts && (volume > 0) != (around % 2 == 0); }
 };
@@ -76,14 +88,22 @@ bool is_within(const BoundingBox& inner, const BoundingBox& outer) {
 }
 
 void count_enclosing(std::vector<Shell>& shells, const TriangleMesh& mesh, Execution& execution) {
+    if (shells.size() < 2) return;
+    std::vector<std::pair<Shell*, Vec3>> by_x;
+    for (Shell& shell : shells) by_x.emplace_back(&shell, shell.inner_point(mesh));
+    std::ranges::sort(by_x, {}, [](const auto& it) { return std::pair(it.first->box.low.x(), it.first->rows[0]); });
     for (const Shell& outer : shells) {
+        execution.check_cancelled();
         std::vector<Shell*> candidates;
         Array<Vec3> points;
-        for (Shell& inner : shells)
-            if (&inner != &outer && is_within(inner.box, outer.box)) {
-                candidates.push_back(&inner);
-                points.push_back(mesh.positions[inner.lowest()]);
-            }
+        auto next =
+            std::ranges::lower_bound(by_x, outer.box.low.x(), {}, [](const auto& it) { return it.first->box.low.x(); });
+        for (; next != by_x.end() && next->first->box.low.x() <= outer.box.high.x(); ++next) {
+            const auto& [inner, point] = *next;
+            if (std::abs(outer.volume) <= std::abs(inner->volume) || !is_within(inner->box, outer.box)) continue;
+            candidates.push_back(inner);
+            points.push_back(point);
+        }
         if (candidates.empty()) continue;
         const TriangleTree tree(mesh.positions.span(), outer.triangles, execution.threads());
         const Array<u8> inside = enclosed(points, mesh.positions.span(), outer.triangles, tree, execution);

@@ -197,7 +197,7 @@ std::vector<bool> vertices_of_filled(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, std::size_t most) {
+std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, std::size_t most, Execution& execution) {
     const Array<u32> opposite = half_edges::opposites(mesh);
     const std::vector<u64> flow = flows(mesh, opposite);
     std::vector<bool> is_seed(mesh.positions.size(), false);
@@ -207,6 +207,7 @@ std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, s
     std::map<u64, HandleLoop> found;
     for (u32 vertex = 0; vertex < is_seed.size() && found.size() < most; ++vertex) {
         if (!is_seed[vertex]) continue;
+        execution.check_cancelled();
         auto [loop, its] = search.shortest_from(vertex, longest);
         if (loop.vertices.empty()) continue;
         const auto [known, is_new] = found.try_emplace(its, loop);
@@ -220,7 +221,7 @@ std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, s
     return loops;
 }
 
-std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh,
+std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh, Execution& execution,
                                               const std::function<bool(u32 vertex)>& is_invented) {
     const MeshTopology shape = topology(mesh);
     if (!shape.closed || shape.genus.value_or(0) == 0) return {};
@@ -228,12 +229,13 @@ std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh,
     const std::size_t allowed = std::max(few_loops, shape.vertices / vertices_per_loop);
     // More loops than these give no other answer, unless points are invented.
     const std::size_t most = std::max<std::size_t>(allowed + 1, 100);
-    const std::vector<HandleLoop> loops = handle_loops(mesh, limit, most);
+    const std::vector<HandleLoop> loops = handle_loops(mesh, limit, most, execution);
     if (loops.empty()) return {};
-    const HandleLoop& shortest = loops.front();
-    const Vec3 at = mesh.positions[shortest.vertices.front()] + mesh.frame.origin;
-    const std::string where = fmt::format("the shortest, of {:.2g} spacings, is at ({:.6g}, {:.6g}, {:.6g})",
-                                          shortest.length / spacing, at.x(), at.y(), at.z());
+    const auto where = [&](const HandleLoop& loop) {
+        const Vec3 at = mesh.positions[loop.vertices.front()] + mesh.frame.origin;
+        return fmt::format("the shortest, of {:.2g} spacings, is at ({:.6g}, {:.6g}, {:.6g})", loop.length / spacing,
+                           at.x(), at.y(), at.z());
+    };
     const std::vector<bool> filled = is_invented ? std::vector<bool>() : vertices_of_filled(mesh);
     const auto passes_invented = [&](const HandleLoop& loop) {
         return std::ranges::any_of(loop.vertices, [&](u32 v) { return is_invented ? is_invented(v) : filled[v]; });
@@ -244,12 +246,13 @@ std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh,
             "the "
             "object may not have these handles; scan the missing part, or compare the surface with the object",
             *shape.genus, count_text(static_cast<std::size_t>(count), "loop of", "loops of"), short_loop,
-            by_count(static_cast<std::size_t>(count), "a handle passes", "handles pass"), where)};
+            by_count(static_cast<std::size_t>(count), "a handle passes", "handles pass"),
+            where(*std::ranges::find_if(loops, passes_invented)))};
     if (loops.size() > allowed)
         return {fmt::format(
             "the surface has genus {}, and {} loops round its handles are shorter than {} spacings; {}: outliers or "
             "noise may join sheets that are apart; remove outliers first, smooth, or thin the scan less",
-            *shape.genus, loops.size(), short_loop, where)};
+            *shape.genus, loops.size(), short_loop, where(loops.front()))};
     return {};
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "scanmill/base/execution.hpp"
 #include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
@@ -24,14 +25,15 @@ struct HandleLoop {
     std::vector<u32> vertices;
 };
 
-/// Loops shorter than `longest` that do not separate the surface: for each vertex the shortest one through it, and of
-/// these the shortest of each homology class, by length. The search ends at `most` loops. A handle of which every such
-/// loop passes through vertices with a shorter one has no loop of its own.
+/// Finds loops that do not separate the surface: for each vertex the shortest one through it, if it is shorter than
+/// `longest`. Keeps the shortest loop of each homology class and sorts the result by length. The search ends at `most`
+/// loops. A handle is missed if each vertex on its loops also has a shorter loop of another handle.
 ///
 /// Pre:  topology().closed; finite positions.
 /// Ties: of equally long loops of a class, that from the lower vertex.
-/// Cost: O(n log n) time, and about 50 µs for each edge at which a cut opens all handles, if `longest` is 12 edges.
-std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, std::size_t most);
+/// Cost: O(n log n) time, and with 12 edges of equal length as `longest` about 50 µs for each edge of a cut that opens
+/// all handles.
+std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, std::size_t most, Execution& execution);
 
 /// A sentence if the surface has handles that the object hardly has; empty otherwise, and for a surface that is not
 /// closed. A loop counts if it is shorter than 12 spacings (edge_spacing()). The surface is doubtful
@@ -41,7 +43,7 @@ std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, s
 ///
 /// `is_invented`: whether a vertex is on a surface that no point shows. Without it, a vertex is invented if one of its
 /// triangles has a value other than 0 in the face column `filled`.
-std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh,
+std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh, Execution& execution,
                                               const std::function<bool(u32 vertex)>& is_invented = {});
 
 }  // namespace scanmill
