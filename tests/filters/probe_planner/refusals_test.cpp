@@ -40,7 +40,7 @@ TEST(ProbePlannerRefusals, Parameters) {
                 testing::HasSubstr("scanner-error is 1 u and radius is 1 u: unless the radius is larger"));
     EXPECT_EQ(
         refusal_of_params([](P& p) { p.scanner_error = 1.5; }),
-        "scanner-error is 1.5 u and radius is 1 u: the ball must be larger than the error to meet the edge first");
+        "scanner-error is 1.5 u and radius is 1 u: unless the radius is larger, a face may be touched before the edge");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 0; }), "spacing must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 1e-9; }),
               "a spacing of 1e-09 u gives more than 1000000 touches");
