@@ -59,5 +59,21 @@ TEST_F(DoubtsCommand, JsonEventsAndRecords_CarryTheDoubts) {
     EXPECT_THAT(events, HasSubstr(R"("ok":0,"doubtful":2,"failed":0)"));
 }
 
+TEST_F(DoubtsCommand, ClosedSurfaceThatIsInsideOut_IsDoubtfulAfterEveryStep) {
+    const auto tetrahedron = [](const char* faces) {
+        return "OFF\n4 4 0\n0 0 0\n3 0 0\n0 3 0\n0 0 4\n" + std::string(faces);
+    };
+    folder_.write("out.off", tetrahedron("3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"));
+    folder_.write("in.off", tetrahedron("3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n"));
+    folder_.write(
+        "flip.yaml",
+        "scanmill: 1\nname: flip\ninputs: {scan: mesh}\nsteps: [edge-flip: ]\noutputs: {\"{scan}.ply\": edge-flip}\n");
+    const ProgramResult inside_out = scanmill({"run", "flip.yaml", "in.off", "-o", "flipped"});
+    EXPECT_THAT(inside_out.out, HasSubstr("doubtful"));
+    EXPECT_THAT(inside_out.err, AllOf(HasSubstr("inside out"), HasSubstr("-6 ")));
+    EXPECT_THAT(scanmill({"run", "flip.yaml", "out.off", "-o", "flipped"}).out,
+                AllOf(HasSubstr(" ok "), Not(HasSubstr("doubtful"))));
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -5,7 +5,6 @@
 #include <nettle/sha2.h>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/io/atomic_file.hpp"
+#include "scanmill/kinds/document.hpp"
 
 namespace scanmill {
 
@@ -39,20 +39,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-Json to_json(const Metric& metric) {
-    if (metric.unit == Unit::boolean) return metric.value != 0;
-    if (!std::isfinite(metric.value)) return nullptr;
-    if (metric.unit == Unit::count && std::abs(metric.value) < 1e15 && metric.value == std::floor(metric.value))
-        return static_cast<std::int64_t>(metric.value);
-    return metric.value;
-}
-
-Json to_json(const Metrics& metrics) {
-    Json json = Json::object();
-    for (const Metric& metric : metrics.values) json[metric.name] = to_json(metric);
-    return json;
-}
 
 Json to_json(const ParameterSet& parameters) {
     Json json = Json::object();
@@ -104,7 +90,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
             entry["filter-version"] = step->spec.version;
             entry["code"] = made.code;
             entry["parameters"] = to_json(reports[each].resolved);
-            entry["metrics"] = to_json(reports[each].metrics);
+            entry["metrics"] = metrics_json(reports[each].metrics);
         } else {
             // Scans of equal content share one node, whose leaf names only the first scan.
             const bool is_this_scan = made.is_scan && !graph.plans[cell.plan]->workflow.inputs.front().list;
@@ -135,7 +121,7 @@ void write_description(const fs::path& file, const std::string& sha256, const st
                     {"kind", name_of(kind_of(value))},
                     {"unit", frame && frame->unit != LengthUnit::unknown ? Json(symbol(frame->unit)) : Json()},
                     {"frame", frame && !frame->name.empty() ? Json(frame->name) : Json()},
-                    {"properties", to_json(properties)}};
+                    {"properties", metrics_json(properties)}};
     if (shift != Vec3::Zero()) json["file"]["shift"] = {shift.x(), shift.y(), shift.z()};
     AtomicFile description(description_of(file));
     description.write(dumped(json) + "\n");

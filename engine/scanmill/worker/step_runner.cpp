@@ -150,7 +150,7 @@ void require_declared(const Outputs& outputs, const Metrics& metrics, const Filt
 void doubt_inside_out(const Outputs& outputs, const FilterSpec& spec, Context& context) {
     for (const PortSpec& port : spec.outputs)
         if (const TriangleMesh* mesh = outputs.find(port.name)->find<TriangleMesh>(); mesh && is_inside_out(*mesh))
-            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g}",
+            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g} u³",
                                       signed_volume(mesh->positions.span(), mesh->triangles.span())),
                           port.name);
 }

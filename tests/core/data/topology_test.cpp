@@ -249,5 +249,34 @@ TEST(DefectsText, NamesOnlyWhatIsThere) {
               "1 triangle with a repeated vertex");
 }
 
+TriangleMesh inside_out(TriangleMesh mesh) {
+    Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+TEST(SignedVolume, IsThatOfTheBody_NegativeInsideOut) {
+    const TriangleMesh block = l_block(2), reversed = inside_out(block);
+    EXPECT_DOUBLE_EQ(scanmill::signed_volume(block.positions.span(), block.triangles.span()), 24);
+    EXPECT_DOUBLE_EQ(scanmill::signed_volume(reversed.positions.span(), reversed.triangles.span()), -24);
+    EXPECT_EQ(scanmill::signed_volume({}, {}), 0);
+}
+
+TEST(IsInsideOut, OnlyForClosedMeshesOfNegativeVolume) {
+    EXPECT_FALSE(is_inside_out(cube()));
+    EXPECT_TRUE(is_inside_out(inside_out(cube())));
+    EXPECT_FALSE(is_inside_out(without_triangles(inside_out(cube()), {0}))) << "open";
+    EXPECT_FALSE(is_inside_out({}));
+    // A cavity in a larger body is right.
+    EXPECT_FALSE(is_inside_out(side_by_side(geodesic_sphere(2, 3), inside_out(geodesic_sphere(1, 3)))));
+    EXPECT_TRUE(is_inside_out(side_by_side(inside_out(geodesic_sphere(2, 3)), geodesic_sphere(1, 3))));
+    // Two opposite triangles enclose nothing.
+    TriangleMesh flat;
+    flat.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0.1), Vec3(0.3, 1, 0.7)};
+    flat.triangles = {Triangle{0, 1, 2}, Triangle{0, 2, 1}};
+    EXPECT_FALSE(is_inside_out(flat));
+}
+
 }  // namespace
 }  // namespace scanmill::test
