@@ -71,6 +71,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
+	python3 bench/quality/outliers.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
