@@ -69,20 +69,6 @@ void keep_largest_component(const TetMesh& tets, std::span<u8> labels) {
     walk(tets, stack, best_seed, keep, [](u32) {});
 }
 
-void fill_cavities(const TetMesh& tets, std::span<u8> labels) {
-    std::vector<u32> stack;
-    Array<u8> reached(labels.size());
-    std::ranges::fill(reached, u8(0));
-    const auto enter = [&](u32 cell) { return labels[cell] != solid && std::exchange(reached[cell], u8(1)) == 0; };
-    for (u32 cell = 0; cell < labels.size(); ++cell) {
-        const bool at_hull =
-            std::ranges::find(tets.neighbours[cell], TetMesh::outside_hull) != tets.neighbours[cell].end();
-        if (at_hull && enter(cell)) walk(tets, stack, cell, enter, [](u32) {});
-    }
-    for (u32 cell = 0; cell < labels.size(); ++cell)
-        if (!reached[cell]) labels[cell] = solid;
-}
-
 Array<u8> coverage(const TetMesh& tets, std::span<const u8> labels, unsigned threads) {
     Array<u8> covered(tets.positions.size());
     std::ranges::fill(covered, u8(0));

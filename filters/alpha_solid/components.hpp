@@ -1,29 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Face-connected components of cells, the cavities that cells enclose, and the points that they cover.
+/// Face-connected components of cells, and the points that they cover.
 
 #include <span>
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/data/tets.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
+#include "scanmill/geometry/tets/incremental_solid.hpp"
 
 namespace scanmill::alpha {
 
-/// The state of a cell while a solid is being chosen. Only `solid` cells are in the solid.
-enum Label : u8 {
-    outside = 0,
-    solid = 1,
-    left_out = 2  ///< in the alpha-solid, but in a component that is not kept
-};
+using enum cell_label::Label;
 
 /// Keeps the face-connected component of solid cells with the most points, and labels the other components `left_out`.
 /// Ties: the component with the lower lowest point (by x, then y, then z), then the one with the lower highest point.
 void keep_largest_component(const TetMesh& tets, std::span<u8> labels);
-
-/// Makes enclosed cells solid. An enclosed cell is not solid, and no path through cells that are not solid connects it
-/// to the outside of the hull.
-void fill_cavities(const TetMesh& tets, std::span<u8> labels);
 
 /// Per vertex: 1 if one of its cells is solid, else 0.
 Array<u8> coverage(const TetMesh& tets, std::span<const u8> labels, unsigned threads);

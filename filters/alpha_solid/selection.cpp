@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "alpha_solid/incremental_solid.hpp"
+#include "scanmill/geometry/tets/incremental_solid.hpp"
 
 namespace scanmill::alpha {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alpha_solid/cell_spheres.hpp"
+#include "scanmill/geometry/tets/circumspheres.hpp"
 #include "alpha_solid/descending_queue.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "alpha_solid/components.hpp"
-#include "alpha_solid/incremental_solid.hpp"
+#include "scanmill/geometry/tets/incremental_solid.hpp"
 #include "alpha_solid/widest_path_sweep.hpp"
 #include "filters/alpha_solid/cases.hpp"
 #include "scanmill/data/topology.hpp"

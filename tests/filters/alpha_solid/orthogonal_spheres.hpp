@@ -7,16 +7,15 @@
 #include <array>
 #include <vector>
 
-#include "alpha_solid/cell_spheres.hpp"
-#include "alpha_solid/sphere_polynomials.hpp"
+#include "scanmill/geometry/tets/circumspheres.hpp"
+#include "scanmill/geometry/tets/sphere_polynomials.hpp"
 
 namespace scanmill::test {
 
-using alpha::dot;
-using alpha::minus;
-using alpha::WeightedPoint;
+using spheres::dot;
+using spheres::minus;
 using Number = CGAL::Exact_rational;
-using Vector = alpha::Offset<Number>;
+using Vector = spheres::Offset<Number>;
 
 struct Ball {
     Vector centre;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alpha_solid/cell_spheres.hpp"
+#include "scanmill/geometry/tets/circumspheres.hpp"
 #include "alpha_solid/descending_queue.hpp"
 #include "scanmill/base/random.hpp"
 

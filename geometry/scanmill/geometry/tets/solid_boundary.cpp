@@ -106,6 +106,25 @@ TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
     return without_unused_vertices(mesh);
 }
 
+void fill_cavities(const TetMesh& tets, std::span<u8> labels) {
+    std::vector<u32> stack;
+    Array<u8> reached(labels.size());
+    std::ranges::fill(reached, u8(0));
+    const auto reach = [&](u32 cell) {
+        if (labels[cell] != solid && std::exchange(reached[cell], u8(1)) == 0) stack.push_back(cell);
+    };
+    for (u32 cell = 0; cell < labels.size(); ++cell)
+        if (std::ranges::count(tets.neighbours[cell], TetMesh::outside_hull) > 0) reach(cell);
+    while (!stack.empty()) {
+        const u32 cell = stack.back();
+        stack.pop_back();
+        for (const u32 across : tets.neighbours[cell])
+            if (across != TetMesh::outside_hull) reach(across);
+    }
+    for (u32 cell = 0; cell < labels.size(); ++cell)
+        if (!reached[cell]) labels[cell] = solid;
+}
+
 BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads)
     : ends_(vertices),
       edges_(3 * triangles.size()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The boundary of a set of cells, whether it is a 2-manifold, and the vertices in no cell.
+/// The boundary of a set of cells, whether it is a 2-manifold, its cavities, and the vertices in no cell.
 
 #include <span>
 
@@ -18,6 +18,10 @@ Array<u32> hidden_vertices(const TetMesh& tets);
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
 /// A mesh of the given triangles with only the vertices that they use, in vertex order, with all columns.
 TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles);
+
+/// Labels enclosed cells 1. An enclosed cell is not labelled 1, and no path through cells that are not labelled 1
+/// connects it to the outside of the hull. Cost: linear.
+void fill_cavities(const TetMesh& tets, std::span<u8> labels);
 
 /// A triangle seen from one of its corners: the edge opposite to this corner, in the triangle's direction.
 struct LinkEdge {

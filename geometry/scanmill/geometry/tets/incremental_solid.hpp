@@ -7,10 +7,18 @@
 
 #include <span>
 
-#include "alpha_solid/components.hpp"
 #include "scanmill/geometry/tets/vertex_stars.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
+
+namespace cell_label {
+/// The state of a cell while a solid is being chosen. Only `solid` cells are in the solid.
+enum Label : u8 {
+    outside = 0,
+    solid = 1,
+    left_out = 2  ///< in a component of the solid that is not kept
+};
+}  // namespace cell_label
 
 class IncrementalSolid {
 public:
@@ -60,4 +68,4 @@ private:
     std::vector<u32> stack_;
 };
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "alpha_solid/incremental_solid.hpp"
+#include "scanmill/geometry/tets/incremental_solid.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace scanmill::alpha {
+namespace scanmill {
+
+using enum cell_label::Label;
 
 namespace {
+
 /// Up to this number, suspects are always tested one by one.
 constexpr std::size_t few_suspects = 1024;
+
 }  // namespace
 
 IncrementalSolid::IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects)
@@ -104,4 +108,4 @@ void IncrementalSolid::repair(std::span<const double> price) {
     }
 }
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill

@@ -17,7 +17,7 @@
 
 #include "scanmill/data/frame.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill::spheres {
 
 template <class Number>
 using Offset = std::array<Number, 3>;
@@ -127,4 +127,4 @@ Fraction<Number> cell_squared_radius(const Lifted<Number>& b, const Lifted<Numbe
     return {dot(centre, centre) + deficit * denominator, denominator};
 }
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill::spheres

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The radii at which the facets of one cell become walls while alpha grows. All values are squared radii.
+/// Circumspheres of cells and facets: their centres, their squared radii, and the radii at which the facets of a cell
+/// enter the alpha-shape.
 ///
 /// A facet enters the alpha-shape at its own circumradius, unless it is attached. It is attached if an opposite corner
 /// of one of its cells lies strictly inside its smallest circumsphere. Then it enters with the smaller circumsphere of
@@ -23,12 +24,20 @@
 #include <array>
 
 #include "scanmill/data/array.hpp"
-#include "scanmill/data/frame.hpp"
+#include "scanmill/base/execution.hpp"
+#include "scanmill/data/tets.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
 
 /// The squared circumradius of a triangle. Pre: the points are not collinear.
 double squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The centre of the sphere through the points. Its error is below 1e-8 times the radius of that sphere, plus the
+/// rounding of the coordinates. Flat cells are computed exactly and then rounded. The order of the points does not
+/// matter. Pre: the points are not coplanar.
+Vec3 circumcentre(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/// The circumcentre of each cell. Without weights, these are the vertices of the Voronoi diagram. Cost: linear.
+Array<Vec3> circumcentres(const TetMesh& tets, Execution& execution);
 
 /// The contribution of a cell to the values of its facets.
 struct CellSpheres {
@@ -53,4 +62,4 @@ struct WeightedPoint {
 /// `largest`.
 CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& corners, double largest, unsigned facets = 15);
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill
