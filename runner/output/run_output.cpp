@@ -11,6 +11,7 @@
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/compare/tables.hpp"
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
@@ -24,9 +25,32 @@ std::string shown_path(const std::filesystem::path& file) {
     return relative.starts_with("..") ? file.string() : relative;
 }
 
+/// A number in the row of a cell. The steps of a cell may have different units of lengths.
+struct ShownMetric {
+    Metric metric;
+    LengthUnit lengths = LengthUnit::unknown;
+};
+using ShownMetrics = std::vector<ShownMetric>;
+
+const ShownMetric* find(const ShownMetrics& metrics, const std::string& name) {
+    const auto found = std::ranges::find_if(metrics, [&](const ShownMetric& one) { return one.metric.name == name; });
+    return found == metrics.end() ? nullptr : &*found;
+}
+
+/// Replaces an earlier metric of the same name.
+void set(ShownMetrics& metrics, const Metric& metric, LengthUnit lengths) {
+    const auto found =
+        std::ranges::find_if(metrics, [&](const ShownMetric& one) { return one.metric.name == metric.name; });
+    if (found == metrics.end())
+        metrics.push_back({metric, lengths});
+    else
+        *found = {metric, lengths};
+}
+
 /// The metrics of a cell that get a column in the report, in the order of the cell's steps.
-Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cell) {
-    Metrics shown, read;
+ShownMetrics headline(const RunGraph& graph, const RunReport& report, std::size_t cell) {
+    ShownMetrics shown;
+    Metrics read;
     for (const std::size_t index : graph.cells[cell].nodes) {
         const RunNode& node = graph.nodes[index];
         const NodeReport& done = report.nodes[index];
@@ -36,22 +60,54 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
             for (const Metric& property : done.properties.values) {  // the counts of a list's scans are added up
                 const Metric* before = read.find(property.name);
                 read.set(property.name, property.value + (before ? before->value : 0), property.unit);
-                shown.set(property.name, read.find(property.name)->value, property.unit);
+                set(shown, *read.find(property.name), done.properties.unit);
             }
             continue;
         }
         for (const MetricSpec& metric : step->spec.metrics)
             if (const Metric* found = done.metrics.find(metric.name); metric.headline && found)
-                shown.set(metric.name, found->value, found->unit);
+                set(shown, *found, done.metrics.unit);
     }
     for (const OutputReport& output : report.cells[cell].outputs)
         if (output.kind == kind_of<TriangleMesh>() && (output.outcome == Outcome::ok || !output.evidence.empty())) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
                 if (const Metric* property = output.properties.find(name))
-                    shown.set(name, property->value, property->unit);
+                    set(shown, *property, output.properties.unit);
             break;
         }
     return shown;
+}
+
+/// A column of metrics. A unit that all values of the column share is written in its header, any other in the cells.
+struct MetricColumn {
+    std::string name, header;
+    bool has_several_units = false;
+
+    std::string cell(const ShownMetric* value) const {
+        if (!value) return "-";
+        return has_several_units ? display(value->metric, value->lengths) : display(value->metric);
+    }
+};
+
+MetricColumn metric_column(const std::string& name, const std::vector<ShownMetrics>& cells) {
+    std::set<std::string> units;
+    bool is_declared = false;
+    for (const ShownMetrics& metrics : cells)
+        if (const ShownMetric* value = find(metrics, name)) {
+            units.insert(length_unit_text(value->metric, value->lengths));
+            is_declared = is_declared || value->lengths != LengthUnit::unknown;
+        }
+    const std::string unit = units.size() == 1 && is_declared ? *units.begin() : "";
+    return {name, unit.empty() ? name : fmt::format("{} ({})", name, unit), units.size() > 1};
+}
+
+std::vector<MetricColumn> metric_columns(const std::vector<ShownMetrics>& cells) {
+    std::vector<MetricColumn> columns;
+    for (const ShownMetrics& metrics : cells)
+        for (const ShownMetric& shown : metrics)
+            if (std::ranges::find(columns, shown.metric.name, &MetricColumn::name) == columns.end())
+                columns.push_back(metric_column(shown.metric.name, cells));
+    return columns;
 }
 
 /// The scan, workflow and variant of a cell.
@@ -154,18 +210,14 @@ Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predic
 }
 
 std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width) {
-    std::vector<Metrics> numbers;
-    std::vector<std::string> columns;
-    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
-        numbers.push_back(headline(graph, report, cell));
-        for (const Metric& metric : numbers.back().values)
-            if (std::ranges::find(columns, metric.name) == columns.end()) columns.push_back(metric.name);
-    }
+    std::vector<ShownMetrics> numbers;
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) numbers.push_back(headline(graph, report, cell));
+    const std::vector<MetricColumn> columns = metric_columns(numbers);
     const bool several_workflows = has_several_workflows(graph), several_variants = has_several_variants(graph);
     std::vector<std::string> headers{"scan"};
     if (several_workflows) headers.push_back("workflow");
     if (several_variants) headers.push_back("variant");
-    headers.insert(headers.end(), columns.begin(), columns.end());
+    for (const MetricColumn& column : columns) headers.push_back(column.header);
     headers.insert(headers.end(), {"seconds", "outcome", "files"});
     Table table(std::move(headers));
     table.may_cut("scan");
@@ -190,10 +242,7 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
             std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
         if (several_workflows) row.push_back(count > 1 ? "-" : graph.workflow(graph.cells[cell]));
         if (several_variants) row.push_back(count > 1 ? "-" : graph.variant(graph.cells[cell]).name);
-        for (const std::string& column : columns) {
-            const Metric* metric = numbers[cell].find(column);
-            row.push_back(metric ? display(*metric) : "-");
-        }
+        for (const MetricColumn& column : columns) row.push_back(column.cell(find(numbers[cell], column.name)));
         row.push_back(fmt::format("{:.2f}", done.seconds));
         row.emplace_back(name_of(done.outcome));
         std::string files;

@@ -62,6 +62,19 @@ TEST_F(MeasuredBatch, TruthInAnotherUnit_IsConverted) {
     EXPECT_NEAR(distances[1], 2, 0.04);
 }
 
+TEST_F(MeasuredBatch, LengthsHaveTheUnitOfTheScans_InTableRecordsAndGate) {
+    write_sphere("truth.stl", 1, 1);
+    write_measured("{path: truth.stl, unit: mm}", "measure: {samples: 2000}\ngate: {hausdorff: +0.01 mm}\n");
+    EXPECT_THAT(run_batch(once_).out, HasSubstr("hausdorff (mm)"));
+    scanmill({"report", "out", "--accept", "--who", "Ann", "--why", "looks good"});
+    const ProgramResult again = run_batch(once_);
+    EXPECT_EQ(again.exit_code, 0) << again.out;
+    EXPECT_THAT(again.out, HasSubstr("2 cells: 2 passed"));
+    EXPECT_THAT(scanmill({"report", "out"}).out, HasSubstr("hausdorff (mm)"));
+    EXPECT_THAT(scanmill({"report", "out", "--table", "csv"}).out,
+                ContainsRegex("measure-surface,hausdorff,[0-9.]+,mm"));
+}
+
 TEST_F(MeasuredBatch, TruthInAnUnknownUnit_FailsItsCellsAndIsNeverScored) {
     write_sphere("truth.stl", 1, 1);
     write_measured("truth.stl");

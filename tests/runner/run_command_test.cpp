@@ -237,6 +237,50 @@ TEST(RunCommand, Save_WritesEveryKindInItsFirstFormat) {
         EXPECT_THAT(tets.err, HasSubstr("gives tets, which no file format can hold"));
 }
 
+class RunCommandUnits : public testing::Test {
+protected:
+    RunCommandUnits() {
+        folder_.write("w.yaml",
+                      "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps: [{delaunay: }, {alpha-solid: }]\n"
+                      "outputs: {'{scan}.ply': alpha-solid}\n");
+        const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+        folder_.write("mm.xyz", "# unit mm\n" + points);
+        folder_.write("m.xyz", "# unit m\n" + points);
+        folder_.write("undeclared.xyz", points);
+    }
+    std::string table_of(const std::vector<std::string>& scans) {
+        std::vector<std::string> arguments{"run", "w.yaml", "-o", "out", "--quiet"};
+        arguments.insert(arguments.end(), scans.begin(), scans.end());
+        const ProgramResult ran = scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        return ran.out;
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(RunCommandUnits, OneUnit_IsInTheHeader) {
+    EXPECT_THAT(table_of({"mm.xyz"}), AllOf(HasSubstr("  alpha (mm)  "), HasSubstr("  0.866025  ")));
+    EXPECT_THAT(table_of({"undeclared.xyz", "--unit", "m"}), HasSubstr("  alpha (m)  "));
+    EXPECT_THAT(table_of({"undeclared.xyz", "--unit", "m"}), HasSubstr("  alpha (m)  ")) << "from the cache";
+    EXPECT_THAT(table_of({"undeclared.xyz"}), AllOf(HasSubstr("  alpha  "), HasSubstr("  0.866025  ")));
+}
+
+TEST_F(RunCommandUnits, DifferentUnits_AreInTheCells) {
+    EXPECT_THAT(table_of({"mm.xyz", "m.xyz", "undeclared.xyz"}),
+                AllOf(HasSubstr("  alpha  "), HasSubstr("  0.866025 mm  "), HasSubstr("  0.866025 m  "),
+                      HasSubstr("  0.866025 u  ")));
+}
+
+TEST_F(RunCommandUnits, Csv_HasTheDeclaredUnit) {
+    table_of({"mm.xyz"});
+    const ProgramResult csv =
+        scanmill_program({"report", "out", "--table", "csv"}, {.folder = folder_.path(), .cache = folder_ / "home"});
+    EXPECT_THAT(csv.out, ContainsRegex(",alpha-solid,alpha,0.866025[0-9]*,mm\r\n"));
+    const ProgramResult report = scanmill_program({"report", "out", "--metric", "alpha"},
+                                                  {.folder = folder_.path(), .cache = folder_ / "home"});
+    EXPECT_THAT(report.out, HasSubstr("alpha (mm)"));
+}
+
 TEST(RunCommand, RealScan_ThroughTheQuickstart) {
     SCANMILL_REAL_SCAN(kitten, fetched_data, "points_3/kitten.xyz");
     const TemporaryFolder folder;

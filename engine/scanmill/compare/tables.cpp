@@ -85,6 +85,11 @@ bool is_trouble(Verdict verdict) {
 
 }  // namespace
 
+std::string length_unit_text(const Metric& metric, LengthUnit lengths) {
+    const std::string with_unit = display(metric, lengths), bare = display(metric);
+    return with_unit.size() > bare.size() ? with_unit.substr(bare.size() + 1) : "";
+}
+
 std::string counts_text(const Comparison& comparison) {
     std::vector<std::string> counts;
     for (const Verdict verdict : all_verdicts)
@@ -192,10 +197,7 @@ ReportTable matrix(const Comparison& comparison, const std::string& metric, std:
         const std::string variant = variant_text(cell, with_workflow);
         if (column_of_variant.emplace(variant, variants.size()).second) variants.push_back(variant);
         if (is_trouble(cell.verdict)) has_trouble[row_of_scan[cell.scan]] = true;
-        if (const auto value = number_of(cell, metric)) {
-            const std::string with_unit = display(value->metric, value->lengths), bare = display(value->metric);
-            units.insert(with_unit.size() > bare.size() ? with_unit.substr(bare.size() + 1) : "");
-        }
+        if (const auto value = number_of(cell, metric)) units.insert(length_unit_text(value->metric, value->lengths));
     }
     const bool one_unit = units.size() == 1;
     std::vector<std::vector<std::string>> rows(scans.size(), std::vector<std::string>(variants.size() + 1, "-"));

@@ -16,6 +16,10 @@ struct ReportTable {
     std::string rest;  ///< "and 12 more", if the limit left out rows; empty otherwise
 };
 
+/// "mm", "u²": the unit that display() writes after the metric's number; empty for a metric that is not a length, an
+/// area or a volume.
+std::string length_unit_text(const Metric& metric, LengthUnit lengths);
+
 /// "12 cells: 1 failed, 2 regressed, 9 passed"
 std::string counts_text(const Comparison& comparison);
 /// "run 14 of 2026-11-23T02:00:11Z against run 9 of …, accepted by Ann: a new scanner"

@@ -150,8 +150,9 @@ void require_declared(const Outputs& outputs, const Metrics& metrics, const Filt
 void doubt_inside_out(const Outputs& outputs, const FilterSpec& spec, Context& context) {
     for (const PortSpec& port : spec.outputs)
         if (const TriangleMesh* mesh = outputs.find(port.name)->find<TriangleMesh>(); mesh && is_inside_out(*mesh))
-            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g} u³",
-                                      signed_volume(mesh->positions.span(), mesh->triangles.span())),
+            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g} {}³",
+                                      signed_volume(mesh->positions.span(), mesh->triangles.span()),
+                                      symbol(mesh->frame.unit)),
                           port.name);
 }
 
@@ -189,6 +190,7 @@ OnWarning adding_to(std::vector<std::string>& warnings) {
 struct Prepared {
     ResolvedParameters resolved;
     std::vector<std::string> warnings;  ///< warnings about resolving the parameters
+    LengthUnit unit;                    ///< unit of the inputs, and so of the filter's metrics
     std::function<Outputs(const FilterDeclaration&, const ParameterSet&)> run;
 };
 
@@ -205,9 +207,11 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
                     report.metrics.set(metric.name, metric.value, declared.unit);
     };
     try {
-        const auto [resolved, warnings, run] = prepare(context);
+        const auto [resolved, warnings, unit, run] = prepare(context);
         report.resolved = resolved.values;
-        if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
+        std::optional<Outputs> known = recall(report.resolved, report);
+        report.metrics.unit = unit;
+        if (known) return std::move(*known);
         for (const std::string& warning : warnings) context.warn(warning);
         Outputs outputs;
         try {
@@ -290,7 +294,7 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
             resolved = resolved_parameters(step, scale);
         }
         return Prepared{
-            std::move(resolved), std::move(warnings),
+            std::move(resolved), std::move(warnings), unit,
             [&context, ports = std::move(ports)](const FilterDeclaration& declared, const ParameterSet& parameters) {
                 return declared.run(ports, parameters, context);
             }};
@@ -302,7 +306,7 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
         std::vector<std::string> warnings;
         ResolvedParameters resolved = resolved_parameters(step, length_scale(scan, adding_to(warnings)));
-        return Prepared{std::move(resolved), std::move(warnings),
+        return Prepared{std::move(resolved), std::move(warnings), scan.frame().unit,
                         [&](const FilterDeclaration& declared, const ParameterSet& parameters) {
                             return declared.run_streamed(scan, parameters, context);
                         }};

@@ -169,5 +169,31 @@ TEST_F(ReaderStep, Lengths_HaveTheUnitOfTheOnlyInputThatDeclaresOne) {
     EXPECT_EQ(sum_of({{"points", without_unit}, {"near", with_unit}}), 30);
 }
 
+TEST_F(ReaderStep, Metrics_HaveTheUnitOfTheInputs) {
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>(one_place_.begin(), one_place_.end());
+    const Value without_unit = std::make_shared<const PointCloud>(cloud);
+    sum_of({{"points", without_unit}});
+    EXPECT_EQ(report_.metrics.unit, LengthUnit::unknown);
+    cloud.frame.unit = LengthUnit::millimetre;
+    const Value with_unit = std::make_shared<const PointCloud>(cloud);
+    sum_of({{"points", with_unit}});
+    EXPECT_EQ(report_.metrics.unit, LengthUnit::millimetre);
+    set("reads", std::string("nothing"));
+    EXPECT_THROW(sum_of({{"points", with_unit}}), Error);
+    EXPECT_EQ(report_.metrics.unit, LengthUnit::millimetre) << "of a step that fails";
+    report_ = {};
+    const std::vector<StepInput> inputs{{"points", with_unit}};
+    run_step(
+        step_, [&]() -> const FilterDeclaration& { return filter_; }, inputs, {},
+        [&](const ParameterSet&, NodeReport& report) {
+            report.metrics = {{{"sum", 2, Unit::length}}};
+            return Outputs().set("points", with_unit);
+        },
+        report_);
+    EXPECT_EQ(report_.metrics.unit, LengthUnit::millimetre) << "of a cached result that lacks the unit";
+    EXPECT_EQ(report_.metrics.find("sum")->value, 2);
+}
+
 }  // namespace
 }  // namespace scanmill
