@@ -186,8 +186,10 @@ public:
 
 private:
     /// The comparison of the recorded run with the accepted one. Empty if there is neither a gate nor an accepted run.
-    /// If the comparison fails, it is empty, the error is printed on stderr, and `code` is raised.
+    /// If the comparison fails, it is empty, the error is printed on stderr, and `code` is raised. The verdict of a gate
+    /// is recorded.
     std::optional<Comparison> judge(const SessionTask& task, std::int64_t run, int& code) const;
+    void record_verdict(const Comparison& comparison) const;
 
     const ExecuteOptions& options_;
     Warn warn_ = warning_printer();
@@ -203,11 +205,21 @@ std::optional<Comparison> Execution::judge(const SessionTask& task, std::int64_t
         std::optional<Comparison> comparison =
             verdict_of_batch(options_.session.output_folder, run, reproducing_command);
         if (comparison) code = std::max(code, exit_code_of(*comparison, options_.strict));
+        if (comparison && !comparison->gate.rules.empty()) record_verdict(*comparison);
         return comparison;
     } catch (const Error& error) {
         print(error, false);
         code = std::max<int>(code, some_failed);
         return std::nullopt;
+    }
+}
+
+void Execution::record_verdict(const Comparison& comparison) const {
+    try {
+        records_to_change(options_.session.output_folder)
+            .add_verdict(comparison.run.id, comparison.count(Verdict::regressed));
+    } catch (const Error& error) {
+        print_warning(fmt::format("the verdict is not recorded: {}", error.sentence()));
     }
 }
 

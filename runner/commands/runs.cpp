@@ -107,8 +107,8 @@ int list_runs(Folder& folder, bool json) {
         print_document(json_of(document));
         return done;
     }
-    std::vector<std::string> headers{"run",    "started",  "workflow", "cells",   "doubtful",
-                                     "failed", "computed", "cached",   "seconds", "outcome"};
+    std::vector<std::string> headers{"run",         "started",  "workflow", "cells",   "doubtful", "failed",
+                                     "regressions", "computed", "cached",   "seconds", "outcome"};
     if (!folder.acceptances.empty()) headers.push_back("accepted");
     Table table(headers);
     for (const RunSummary& run : runs) {
@@ -118,6 +118,7 @@ int list_runs(Folder& folder, bool json) {
                                      std::to_string(run.cells),
                                      std::to_string(run.doubtful),
                                      std::to_string(run.failed),
+                                     run.regressions ? std::to_string(*run.regressions) : "-",
                                      std::to_string(run.ran),
                                      std::to_string(run.cached),
                                      fmt::format("{:.2f}", run.seconds),

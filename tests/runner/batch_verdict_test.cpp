@@ -60,6 +60,26 @@ TEST_F(BatchVerdict, ARegression_TripsInExactlyItsCells) {
     EXPECT_THAT(judged(), ElementsAre());
 }
 
+TEST_F(BatchVerdict, Runs_ListTheRegressionsOfEveryGate) {
+    run_batch();
+    accept();
+    write_variants("2.5 u");
+    run_batch();
+    write_batch("'scans/*.xyz'");
+    run_batch();
+    const Json runs = Json::parse(scanmill({"runs", "out", "--json"}).out)["runs"];
+    ASSERT_EQ(runs.size(), 3u);
+    EXPECT_EQ(runs[0]["regressions"], 0);
+    EXPECT_EQ(runs[1]["regressions"], 2);
+    EXPECT_TRUE(runs[2]["regressions"].is_null()) << "without a gate";
+    EXPECT_THAT(scanmill({"runs", "out"}).out,
+                AllOf(HasSubstr("  failed  regressions  computed  "),
+                      ContainsRegex("\n  2  [^ ]+  b +4 +0 +0 +2 +"), ContainsRegex("\n  3  [^ ]+  b +4 +0 +0 +- +")));
+    accept();
+    EXPECT_EQ(Json::parse(scanmill({"runs", "out", "--json"}).out)["runs"][1]["regressions"], 2)
+        << "under the baseline of its time";
+}
+
 TEST_F(BatchVerdict, TheTrippedGate_OutweighsFailures) {
     run_batch();
     accept();

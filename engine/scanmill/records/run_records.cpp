@@ -62,6 +62,15 @@ constexpr auto fields(const Decision*) {
     return std::tuple{field("at", &R::at), field("who", &R::who), field("why", &R::why)};
 }
 
+/// The verdict of a batch's gate on a run. Its table is not part of layout(), so that older files stay readable.
+struct GateVerdict {
+    std::size_t regressions = 0;
+};
+constexpr auto fields(const GateVerdict*) {
+    return std::tuple{field("regressions", &GateVerdict::regressions)};
+}
+constexpr const char* verdict_table = "gate_verdict";
+
 const std::string& layout() {
     static const std::string sql =
         tables::creation<RunRow>("run", "") + tables::creation<RunEnd>("run_end", "run") +
@@ -224,12 +233,28 @@ void RunRecords::add_costs(std::int64_t run, const std::vector<PastCosts>& cells
     });
 }
 
+void RunRecords::add_verdict(std::int64_t run, std::size_t regressions) {
+    about(database_->file, [&] {
+        SQLite::Transaction transaction(database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
+        if (!database_->sqlite.tableExists(verdict_table))
+            database_->sqlite.exec(tables::creation<GateVerdict>(verdict_table, "run"));
+        tables::insert(database_->statements, verdict_table, GateVerdict{regressions}, run);
+        transaction.commit();
+    });
+}
+
 std::vector<RunSummary> RunRecords::summaries(std::optional<std::int64_t> id) const {
     return about(database_->file, [&] {
+        const std::string regressions =
+            database_->sqlite.tableExists(verdict_table)
+                ? "(SELECT verdict.regressions FROM gate_verdict AS verdict WHERE verdict.parent = run.id "
+                  "ORDER BY verdict.id DESC LIMIT 1)"
+                : "NULL";
         const std::string sql =
-            "SELECT run.id, started, workflow, run_end.outcome, counts.cells, counts.doubtful, counts.failed, "
-            "counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT JOIN run_end ON run_end.parent = "
-            "run.id JOIN run_counts AS counts ON counts.run = run.id";
+            "SELECT run.id, started, workflow, run_end.outcome, counts.cells, counts.doubtful, counts.failed, " +
+            regressions +
+            ", counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT JOIN run_end ON "
+            "run_end.parent = run.id JOIN run_counts AS counts ON counts.run = run.id";
         SQLite::Statement rows(database_->sqlite, sql + (id ? " WHERE run.id = ?" : " ORDER BY run.id"));
         if (id) rows.bind(1, *id);
         std::vector<RunSummary> runs;

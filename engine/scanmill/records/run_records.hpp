@@ -5,6 +5,7 @@
 /// Rows are never changed or removed. A run without an end is still running or was killed. The file may be on a network
 /// file system, because it uses a rollback journal. Any SQLite program can read it. Its tables derive from the fields
 /// of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with other fields refuses the file.
+/// The table `gate_verdict` is created for the first run that a gate judges; files without it are accepted.
 
 #include <filesystem>
 #include <memory>
@@ -64,6 +65,8 @@ public:
     void end(std::int64_t run, const std::string& outcome, double seconds) { end(run, {}, {}, outcome, seconds); }
     /// Appends the costs of one more pass over cells of the run. Pre: this object added the cells.
     void add_costs(std::int64_t run, const std::vector<PastCosts>& cells);
+    /// Appends the verdict of the gate on the run: the number of cells that regressed.
+    void add_verdict(std::int64_t run, std::size_t regressions);
 
     /// Makes the run the baseline of its batch. Throws Error for an unknown run, and for a run that was killed or
     /// interrupted.

@@ -166,7 +166,9 @@ struct RunSummary {
     std::int64_t id = 0;
     std::string started, workflow;
     std::optional<std::string> outcome;
-    std::size_t cells = 0, doubtful = 0, failed = 0, ran = 0, cached = 0;
+    std::size_t cells = 0, doubtful = 0, failed = 0;
+    std::optional<std::size_t> regressions;
+    std::size_t ran = 0, cached = 0;
     double seconds = 0;
 };
 constexpr auto fields(const RunSummary*) {
@@ -178,6 +180,8 @@ constexpr auto fields(const RunSummary*) {
                       field("cells", &R::cells),
                       field("doubtful", &R::doubtful, "Doubtful cells."),
                       field("failed", &R::failed, "Failed cells."),
+                      field("regressions", &R::regressions,
+                            "Cells that regressed under the gate of the batch; null: the run was not judged by a gate."),
                       field("ran", &R::ran, "Steps that were computed."),
                       field("cached", &R::cached, "Steps whose result was in the cache."),
                       field("seconds", &R::seconds)};

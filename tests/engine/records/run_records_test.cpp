@@ -194,6 +194,24 @@ TEST_F(Records, RunsAfterEachOther_AreNumbered_AndAKilledOneHasNoEnd) {
     EXPECT_THAT(sentence_of([&] { records.run(9); }), HasSubstr("there is no run 9 in"));
 }
 
+TEST_F(Records, VerdictOfAGate_IsReadBack) {
+    RunRecords records = RunRecords::append_to(file());
+    const std::int64_t without = records.begin(some_start());
+    records.end(without, "ok", 1);
+    EXPECT_FALSE(records.summary(without).regressions);
+    const std::int64_t judged = records.begin(some_start()), passed = records.begin(some_start());
+    for (const std::int64_t run : {judged, passed}) records.end(run, "ok", 1);
+    records.add_verdict(judged, 3);
+    records.add_verdict(passed, 0);
+    const std::vector<RunSummary> runs = RunRecords::read(file()).runs();
+    ASSERT_EQ(runs.size(), 3u);
+    EXPECT_FALSE(runs[0].regressions);
+    EXPECT_EQ(runs[1].regressions, 3u);
+    EXPECT_EQ(runs[2].regressions, 0u);
+    EXPECT_EQ(runs[1].outcome, "ok");
+    EXPECT_EQ(runs[1].seconds, 1) << "the columns after it";
+}
+
 TEST_F(Records, TwoWritersAtOnce_BothArrive) {
     RunRecords one = RunRecords::append_to(file()), other = RunRecords::append_to(file());
     const std::int64_t first = one.begin(some_start()), second = other.begin(some_start());
