@@ -32,10 +32,13 @@ nlohmann::ordered_json uses_json(const char* key, const std::vector<CacheUse>& u
 /// The heading, then a line for each use; empty if no file is used.
 std::string uses_text(const char* heading, const std::vector<CacheUse>& uses) {
     std::size_t width = 0;
-    for (const CacheUse& use : uses) width = std::max(width, use.name.size());
+    for (const CacheUse& use : uses) width = std::max(width, columns_of(printable_line(use.name)));
     std::string text;
-    for (const CacheUse& use : uses)
-        if (use.bytes > 0) text += fmt::format("  {:{}}  {}\n", use.name, width, byte_size_text(use.bytes));
+    for (const CacheUse& use : uses) {
+        const std::string name = printable_line(use.name);
+        const std::string padding(width - columns_of(name), ' ');
+        if (use.bytes > 0) text += fmt::format("  {}{}  {}\n", name, padding, byte_size_text(use.bytes));
+    }
     return text.empty() ? text : fmt::format("{}\n{}", heading, text);
 }
 
@@ -50,11 +53,13 @@ int info(const Options& options) {
                     {"bytes", info.bytes},
                     {"limit", info.limit},
                     {"by-filter", uses_json("filter", info.by_filter)},
+                    {"by-workflow", uses_json("workflow", info.by_workflow)},
                     {"by-age", uses_json("used", info.by_age)}});
     else
-        fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n{}{}", printable_line(folder), info.steps,
+        fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n{}{}{}", printable_line(folder), info.steps,
                    info.values, byte_size_text(info.bytes), byte_size_text(info.limit),
-                   uses_text("size by filter", info.by_filter), uses_text("size by last use", info.by_age));
+                   uses_text("size by filter", info.by_filter), uses_text("size by workflow", info.by_workflow),
+                   uses_text("size by last use", info.by_age));
     return done;
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "support/program.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -77,16 +79,40 @@ TEST_F(CacheCommand, InfoAndClear_AreAboutTheSameFolder) {
     EXPECT_EQ(full["folder"], (folder_ / "home/scanmill").string());
     EXPECT_THAT(scanmill({"cache", "info"}).out, AllOf(HasSubstr("steps   2"), HasSubstr("size by filter"),
                                                        HasSubstr("voxel-thin"), HasSubstr("last day")));
+    EXPECT_THAT(scanmill({"cache", "info"}).out, ContainsRegex("size by workflow\n  w +[0-9.]+ "));
+    EXPECT_EQ(full["by-workflow"][0]["workflow"], "w");
     const auto sum = [](const json& uses) {
         std::int64_t bytes = 0;
         for (const json& use : uses) bytes += use["bytes"].get<std::int64_t>();
         return bytes;
     };
     EXPECT_EQ(sum(full["by-filter"]), full["bytes"]);
+    EXPECT_EQ(sum(full["by-workflow"]), full["bytes"]);
     EXPECT_EQ(sum(full["by-age"]), full["bytes"]);
     EXPECT_EQ(scanmill({"cache", "clear"}).exit_code, 0);
     EXPECT_EQ(json::parse(scanmill({"cache", "info", "--json"}).out)["bytes"], 0);
     EXPECT_THAT(run({"--dry-run"}).out, HasSubstr("2 to compute, 0 cached"));
+}
+
+TEST_F(CacheCommand, ResultOfSeveralWorkflows_CountsForTheFirst) {
+    run({"--keep", "always"});
+    const auto uses = [&] {
+        const json info = json::parse(scanmill({"cache", "info", "--json"}).out);
+        std::map<std::string, std::int64_t> bytes;
+        for (const json& use : info["by-workflow"]) bytes[use["workflow"]] = use["bytes"].get<std::int64_t>();
+        return bytes;
+    };
+    const auto before = uses();
+    const std::string steps = "inputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n";
+    folder_.write("w.yaml", "scanmill: 1\nname: other\n" + steps + "outputs: {'{scan}.ply': voxel-thin}\n");
+    run({"--keep", "always"});
+    EXPECT_EQ(uses(), before) << "nothing was computed";
+    folder_.write("w.yaml", "scanmill: 1\nname: other\n" + steps +
+                                "  - id: again\n    voxel-thin: {bin-size: 5 u}\noutputs: {'{scan}.ply': again}\n");
+    run({"--keep", "always"});
+    EXPECT_EQ(uses().at("w"), before.at("w"));
+    EXPECT_GT(uses().at("other"), 0);
+    EXPECT_THAT(scanmill({"cache", "info"}).out, HasSubstr("\n  other "));
 }
 
 TEST_F(CacheCommand, FolderOfItsOwn_IsUsed) {

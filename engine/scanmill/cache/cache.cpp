@@ -62,35 +62,68 @@ u64 remove(const CachedFile& file) {
     return fs::remove(file.path, gone) ? file.bytes : 0;
 }
 
-std::vector<CacheUse> use_by_filter(const std::vector<CachedFile>& files) {
-    std::map<std::string, u64> bytes_by_filter;
-    std::map<std::string, std::string> filter_of_value;  // by content
-    for (const CachedFile& file : files) {
-        if (file.kind != "steps") continue;
-        std::string filter = "(other)";
-        try {
-            if (const std::optional<std::string> bytes = read_checked(file.path, "step")) {
-                const StepResult result = step_result_from(*bytes);
-                filter = result.filter.empty() ? "(scans)" : result.filter;
-                for (const ResultOutput& output : result.outputs) {
-                    const auto [found, is_new] = filter_of_value.emplace(output.content, filter);
-                    if (!is_new) found->second = std::min(found->second, filter);
-                }
-            }
-        } catch (const Error&) {  // a damaged entry is reported when it is used
+/// Adds up the sizes of files by the names that step results contain.
+class UseByName {
+public:
+    /// `rest` is the name for files without a name.
+    explicit UseByName(std::string rest) : rest_(std::move(rest)) {}
+
+    /// Adds the file of a step, and gives the name to the step's values.
+    void add_step(const CachedFile& file, const std::string& name, const StepResult& result) {
+        bytes_[name] += file.bytes;
+        for (const ResultOutput& output : result.outputs) {
+            std::string& value = name_of_value_.emplace(output.content, name).first->second;
+            if (value == rest_ || (name != rest_ && name < value)) value = name;
         }
-        bytes_by_filter[filter] += file.bytes;
     }
-    for (const CachedFile& file : files) {
-        if (file.kind == "steps") continue;
+    /// Adds any other file. Pre: all steps were added.
+    void add(const CachedFile& file) {
         const auto found =
-            file.kind == "values" ? filter_of_value.find(file.path.filename().string()) : filter_of_value.end();
-        bytes_by_filter[found == filter_of_value.end() ? "(other)" : found->second] += file.bytes;
+            file.kind == "values" ? name_of_value_.find(file.path.filename().string()) : name_of_value_.end();
+        bytes_[found == name_of_value_.end() ? rest_ : found->second] += file.bytes;
     }
-    std::vector<CacheUse> uses;
-    for (const auto& [filter, bytes] : bytes_by_filter) uses.push_back({filter, bytes});
-    std::ranges::stable_sort(uses, std::ranges::greater(), &CacheUse::bytes);
-    return uses;
+    /// The largest first, then by name.
+    std::vector<CacheUse> uses() const {
+        std::vector<CacheUse> all;
+        for (const auto& [name, bytes] : bytes_) all.push_back({name, bytes});
+        std::ranges::stable_sort(all, std::ranges::greater(), &CacheUse::bytes);
+        return all;
+    }
+
+private:
+    std::string rest_;
+    std::map<std::string, u64> bytes_;
+    std::map<std::string, std::string> name_of_value_;  // by content
+};
+
+/// The result of the step in the file; empty for a damaged file, which is reported when it is used.
+std::optional<StepResult> step_in(const CachedFile& file) {
+    try {
+        if (const std::optional<std::string> bytes = read_checked(file.path, "step")) return step_result_from(*bytes);
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+}
+
+void add_uses_by_name(const std::vector<CachedFile>& files, CacheInfo& info) {
+    const std::string unknown = "unknown";
+    UseByName filters("(other)"), workflows(unknown);
+    std::vector<const CachedFile*> others;
+    for (const CachedFile& file : files) {
+        const std::optional<StepResult> step = file.kind == "steps" ? step_in(file) : std::nullopt;
+        if (step) {
+            filters.add_step(file, step->filter.empty() ? "(scans)" : step->filter, *step);
+            workflows.add_step(file, step->workflow.empty() ? unknown : step->workflow, *step);
+        } else {
+            others.push_back(&file);
+        }
+    }
+    for (const CachedFile* file : others) {
+        filters.add(*file);
+        workflows.add(*file);
+    }
+    info.by_filter = filters.uses();
+    info.by_workflow = workflows.uses();
 }
 
 std::vector<CacheUse> use_by_age(const std::vector<CachedFile>& files) {
@@ -262,7 +295,7 @@ CacheInfo Cache::info() const {
         info.values += file.kind == "values";
         info.bytes += file.bytes;
     }
-    info.by_filter = use_by_filter(files);
+    add_uses_by_name(files, info);
     info.by_age = use_by_age(files);
     return info;
 }

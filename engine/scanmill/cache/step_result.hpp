@@ -38,6 +38,7 @@ struct StepResult {
     std::vector<Doubt> doubts;
     double seconds = 0;  ///< run time of the filter
     std::string filter{};  ///< for reports about the cache; empty: a scan was read
+    std::string workflow{};  ///< name of the workflow that stored the result, for the same reports; empty: unknown
 
     const ResultOutput* output(std::string_view port) const;
 };
@@ -46,7 +47,8 @@ constexpr auto fields(const StepResult*) {
     return std::tuple{field("outputs", &R::outputs),   field("resolved", &R::resolved),
                       field("metrics", &R::metrics),   field("properties", &R::properties),
                       field("warnings", &R::warnings), field("doubts", &R::doubts),
-                      field("seconds", &R::seconds),   field("filter", &R::filter).optional()};
+                      field("seconds", &R::seconds),   field("filter", &R::filter).optional(),
+                      field("workflow", &R::workflow).optional()};
 }
 
 std::string to_bytes(const StepResult& result);

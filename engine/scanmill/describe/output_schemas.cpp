@@ -127,6 +127,8 @@ Json cache_info_schema() {
                             {"limit", bytes()},
                             {"by-filter", described("The largest first; (scans) and (other) are no filters.",
                                                     list_of(object({{"filter", text()}, {"bytes", bytes()}})))},
+                            {"by-workflow", described("By the workflow that stored the results, the largest first.",
+                                                      list_of(object({{"workflow", text()}, {"bytes", bytes()}})))},
                             {"by-age", described("By the time since the last use.",
                                                  list_of(object({{"used", text()}, {"bytes", bytes()}})))}}));
 }

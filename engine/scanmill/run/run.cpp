@@ -303,6 +303,7 @@ private:
         caching.is_used = settings_.cache && !node.is_uncacheable;
         caching.plan_key = node.key;
         caching.code = node.code;
+        caching.workflow = workflow_name(*graph_.plans[node.plan]);
         for (const auto& [port, uses] : nodes_[index].uses)
             if (uses > 0) caching.needed.push_back(port);
         for (const NodeInput& input : node.inputs) caching.inputs_cost += nodes_[input.node].cost;

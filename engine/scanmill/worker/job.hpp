@@ -39,11 +39,13 @@ struct JobCaching {
     std::string code;
     double inputs_cost = 0;  ///< seconds to compute again the inputs that the cache does not have
     std::vector<std::string> needed;  ///< output ports that other tasks need
+    std::string workflow{};  ///< StepResult::workflow
 };
 constexpr auto fields(const JobCaching*) {
     using R = JobCaching;
     return std::tuple{field("is-used", &R::is_used), field("plan-key", &R::plan_key), field("code", &R::code),
-                      field("inputs-cost", &R::inputs_cost), field("needed", &R::needed)};
+                      field("inputs-cost", &R::inputs_cost), field("needed", &R::needed),
+                      field("workflow", &R::workflow)};
 }
 
 struct ReadWork {

@@ -390,6 +390,7 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
     result.doubts = report.node.doubts;
     result.seconds = seconds;
     if (work) result.filter = work->step->spec.name;
+    result.workflow = caching.workflow;
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 

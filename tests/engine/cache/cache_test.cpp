@@ -51,6 +51,7 @@ StepResult some_result() {
     result.warnings = {"one", "two\n\xff"};
     result.seconds = 0.1 + 0.2;
     result.filter = "thin";
+    result.workflow = "thinning";
     return result;
 }
 
@@ -110,6 +111,7 @@ TEST_F(CacheTest, WhatWasKept_ComesBackToAnotherProcess) {
     EXPECT_EQ(result.warnings, some_result().warnings);
     EXPECT_EQ(result.seconds, 0.1 + 0.2);
     EXPECT_EQ(result.filter, "thin");
+    EXPECT_EQ(result.workflow, "thinning");
     EXPECT_THAT(told_, IsEmpty());
 }
 
@@ -202,6 +204,36 @@ TEST_F(CacheTest, Info_SharesTheBytesByFilterAndByLastUse) {
     EXPECT_EQ(info.by_age[1].bytes, size_of_file(value_file(thinned)));
     EXPECT_EQ(info.by_age[2].bytes, 0u);
     EXPECT_EQ(info.by_age[3].bytes, size_of_file(value_file(unknown)));
+}
+
+TEST_F(CacheTest, Info_SharesTheBytesByWorkflow) {
+    const EncodedValue own(line_of_points(1000)), shared(line_of_points(500)), old(line_of_points(100));
+    const auto result_of = [](const std::vector<const EncodedValue*>& values, const std::string& workflow) {
+        StepResult result;
+        for (const EncodedValue* value : values)
+            result.outputs.push_back({"points", kind_of<PointCloud>(), value->content(), 1});
+        result.workflow = workflow;
+        return result;
+    };
+    Cache cache = open();
+    for (const EncodedValue* value : {&own, &shared, &old}) cache.keep_value(*value);
+    const std::string old_key(32, 'd');
+    cache.keep_step(key, result_of({&own, &shared}, "watertight"));
+    cache.keep_step(other_key, result_of({&shared}, "zoom"));
+    cache.keep_step(old_key, result_of({&old, &own}, ""));
+    cache.keep_step(key, result_of({}, "later"));  // does not replace the result
+    cache.keep_run_key(old_key, key);
+    const auto bytes_in = [&](const std::string& kind, const std::string& name) {
+        return static_cast<u64>(fs::file_size(folder_ / ("cache/v1/" + kind + "/" + name.substr(0, 2) + "/" + name)));
+    };
+    const CacheInfo info = cache.info();
+    ASSERT_EQ(info.by_workflow.size(), 3u);
+    EXPECT_EQ(info.by_workflow[0],
+              (CacheUse{"watertight", bytes_in("values", own.content()) + bytes_in("values", shared.content()) +
+                                          bytes_in("steps", key)}));
+    EXPECT_EQ(info.by_workflow[1], (CacheUse{"unknown", bytes_in("values", old.content()) + bytes_in("steps", old_key) +
+                                                            bytes_in("plans", old_key)}));
+    EXPECT_EQ(info.by_workflow[2], (CacheUse{"zoom", bytes_in("steps", other_key)}));
 }
 
 TEST(DefaultCacheLimit, IsATenthOfTheDiskAndAtMostTwentyGibibytes) {

@@ -113,7 +113,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     work.inputs = {{"points", 3, "mesh", "c", {}},
                    {"more", 4, "", "d", LeafSource{"/a", "d", kind_of<PointCloud>(), {}, "", {}}}};
     work.parameter_files = {{"/a path", "content"}};
-    work.caching = {true, "plan", "code", 0.1, {"points", "mesh"}};
+    work.caching = {true, "plan", "code", 0.1, {"points", "mesh"}, "workflow"};
     job.work = work;
     const Job received = job_from(to_message(job), library_);
     EXPECT_EQ(received.node, 7u);
@@ -138,6 +138,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     EXPECT_TRUE(arrived.caching.is_used);
     EXPECT_EQ(arrived.caching.inputs_cost, 0.1);
     EXPECT_EQ(arrived.caching.needed, work.caching.needed);
+    EXPECT_EQ(arrived.caching.workflow, "workflow");
     const PlannedStep &sent = *work.step, &step_there = *arrived.step;
     EXPECT_EQ(step_there.label, sent.label);
     ASSERT_EQ(step_there.parameters.values.size(), sent.parameters.values.size());
