@@ -186,8 +186,8 @@ public:
 
 private:
     /// The comparison of the recorded run with the accepted one. Empty if there is neither a gate nor an accepted run.
-    /// If the comparison fails, it is empty, the error is printed on stderr, and `code` is raised. The verdict of a gate
-    /// is recorded.
+    /// If the comparison fails, it is empty, the error is printed on stderr, and `code` is raised. Records the verdict
+    /// of a gate.
     std::optional<Comparison> judge(const SessionTask& task, std::int64_t run, int& code) const;
     void record_verdict(const Comparison& comparison) const;
 

@@ -40,8 +40,8 @@ struct CacheInfo {
     /// By the filter whose results the files hold, the largest first, then by name. A value of several filters counts
     /// for the first name. "(scans)": scans that were read; "(other)": keys, and what no readable step refers to.
     std::vector<CacheUse> by_filter;
-    /// By the workflow that stored the results, in the same way. A named workflow precedes "unknown", which counts keys,
-    /// results of older versions, and what no readable step refers to.
+    /// By the workflow that stored the results, in the same way. "unknown": keys, results of older versions, and what
+    /// no readable step refers to. A value with a known and an unknown workflow counts for the known one.
     std::vector<CacheUse> by_workflow;
     /// By the time since the last use: less than a day, 7 days, 30 days, and more. Each file counts once.
     std::vector<CacheUse> by_age;

@@ -181,7 +181,7 @@ constexpr auto fields(const RunSummary*) {
                       field("doubtful", &R::doubtful, "Doubtful cells."),
                       field("failed", &R::failed, "Failed cells."),
                       field("regressions", &R::regressions,
-                            "Cells that regressed under the gate of the batch; null: the run was not judged by a gate."),
+                            "Cells that regressed under the gate of the batch; null: no gate judged the run."),
                       field("ran", &R::ran, "Steps that were computed."),
                       field("cached", &R::cached, "Steps whose result was in the cache."),
                       field("seconds", &R::seconds)};
