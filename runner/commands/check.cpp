@@ -12,6 +12,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/graph/graph.hpp"
+#include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
 

@@ -27,14 +27,6 @@ struct CheckedWorkflow {
 
 using Warn = std::function<void(std::string)>;
 
-/// The names of the ready workflows and batches that are installed with the program, sorted.
-std::vector<std::string> ready_names();
-
-/// Resolves the argument of a command that takes a workflow or a batch. An existing file is used as it is. Otherwise
-/// the argument may be the name of a ready workflow or batch, whose path is returned; a folder does not hide it. Warns
-/// if the argument could mean both a file and a ready one. Throws Error with a suggestion if there is neither.
-std::string workflow_file(const std::string& file_or_name, const Warn& warn);
-
 /// Checks the workflow in `text`, the content of `file`.
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
                                const Settings& settings);

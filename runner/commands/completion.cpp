@@ -11,6 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/workflow/document.hpp"
+#include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
 

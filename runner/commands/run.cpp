@@ -24,6 +24,7 @@
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
+#include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
 

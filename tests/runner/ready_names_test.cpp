@@ -108,5 +108,48 @@ TEST_F(ReadyNames, FolderAndYamlFileOfThatName_UseTheReadyOneWithAWarning) {
     EXPECT_THAT(own.err, Not(HasSubstr("warning")));
 }
 
+class ReadyNamesInABatch : public ReadyNames {
+protected:
+    ReadyNamesInABatch() { folder_.write("jobs/a.xyz", "0 0 0\n"); }
+    ProgramResult check(const std::string& workflow) {
+        folder_.write("jobs/b.yaml", "scanmill: 1\nbatch: b\nscans: [a.xyz]\nworkflows: [" + workflow + "]\n");
+        return scanmill({"check", "jobs/b.yaml", "--plan"});
+    }
+};
+
+TEST_F(ReadyNamesInABatch, Name_IsFoundWithoutAFileBesideTheBatch) {
+    const ProgramResult result = check("points-with-normals");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("points-with-normals: "));
+    EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(ReadyNamesInABatch, YamlFileOfThatName_UsesTheReadyOneWithAWarning) {
+    folder_.write("jobs/points-with-normals.yaml", own_workflow);
+    const ProgramResult result = check("points-with-normals");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("points-with-normals: "));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("jobs/b.yaml:4:13: warning: "), HasSubstr("'points-with-normals.yaml'"),
+                                  HasSubstr("in the folder 'jobs'")));
+}
+
+TEST_F(ReadyNamesInABatch, FileOfThatNameBesideTheBatch_IsUsedWithAWarning) {
+    folder_.write("points-with-normals", "in the current folder, which does not count");
+    folder_.write("jobs/points-with-normals", own_workflow);
+    const ProgramResult result = check("points-with-normals");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("my-own: "));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("warning: "), HasSubstr("'./points-with-normals'")));
+    EXPECT_THAT(check("./points-with-normals").err, Not(HasSubstr("warning")));
+}
+
+TEST_F(ReadyNamesInABatch, MisspeltName_SuggestsTheReadyOne) {
+    for (const char* name : {"raw-scanss", "raw-scanss.yaml"}) {
+        const ProgramResult result = check(name);
+        EXPECT_EQ(result.exit_code, 2) << name;
+        EXPECT_THAT(result.err, AllOf(HasSubstr("jobs/b.yaml:4:13: "), HasSubstr("did you mean 'raw-scans'"))) << name;
+    }
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -18,6 +18,7 @@
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/plan/wiring.hpp"
 #include "scanmill/workflow/grammar.hpp"
+#include "scanmill/workflow/ready.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
@@ -206,7 +207,14 @@ private:
     void add_workflow(const YamlNode& node, Batch& batch) {
         const auto text = require_text(node, "a workflow file, as compare.yaml", diagnostics_);
         if (!text) return;
-        const fs::path file = folder_ / *text;
+        fs::path file = folder_;
+        const auto warn = [&](std::string sentence) { diagnostics_.warning(node.position, std::move(sentence)); };
+        if (!text->empty()) try {
+                file = workflow_file(*text, warn, folder_);
+            } catch (const Error& error) {
+                diagnostics_.error(node.position, error.sentence());
+                return;
+            }
         std::error_code ignored;
         if (fs::is_directory(file, ignored) || text->empty()) {
             diagnostics_.error(node.position, "'{}' is a folder; expected a workflow file", file.string());

@@ -4,8 +4,9 @@
 /// It also states how results are measured by their truths, and by how much they may differ from the accepted run. A
 /// batch is parsed, then checked together with its workflows.
 ///
-/// Paths are relative to the batch file. Scans are named by paths with wildcards; see scan_files(). A parsed batch
-/// holds every file once. The files of one entry are sorted.
+/// Paths are relative to the batch file. A workflow may also be the name of a ready one; see workflow_file(). Scans are
+/// named by paths with wildcards; see scan_files(). A parsed batch holds every file once. The files of one entry are
+/// sorted.
 
 #include <filesystem>
 #include <map>

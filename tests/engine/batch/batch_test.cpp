@@ -94,7 +94,7 @@ sumary: It.
         ElementsAre(AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
                     StartsWith("b:5:31: 'yard' is not a unit"),
                     StartsWith("b:5:46: a setting cannot refer to a parameter"),
-                    AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
+                    AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml' cannot be opened")),
                     "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
                     AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
                     StartsWith("b:8:20: a parameter of `measure` has one value"),
