@@ -52,6 +52,7 @@ public:
         }
         if (!require_map(root, batch_forms, diagnostics_)) return batch;
         const auto scans = [&](const YamlEntry& entry) {
+            batch.has_scans = true;
             batch.scans = parse_scans(entry.value, folder_, diagnostics_);
         };
         const auto workflows = [&](const YamlEntry& entry) { add_workflows(entry.value, batch); };
@@ -63,7 +64,7 @@ public:
                      {grammar_version_key(diagnostics_),
                       {"batch", name_into(batch.name, "a batch", diagnostics_), "has no name; expected `batch: NAME`"},
                       {"summary", text_into(batch.summary, diagnostics_)},
-                      {"scans", scans, "has no scans; expected `scans:` with a list of paths"},
+                      {"scans", scans},
                       {"workflows", workflows, "has no workflows; expected `workflows:` with a list of files"},
                       {"set", set},
                       {"limits", limits},
@@ -279,12 +280,12 @@ public:
             for (const BatchScan& scan : batch.scans) report_undeclared(scan.settings);
             report_unknown_inputs();
             report_idle_rules();
-            report_idle_scans();
         }
         report_idle_truths();
         const bool is_sound = !unreadable_ && std::ranges::none_of(checked_.diagnostics, &Diagnostics::has_errors);
+        if (is_sound) report_idle_scans();
         if (is_sound && measuring_) report_unmeasured();
-        if (is_sound && batch.gate && batch.measure.has_value() == (measuring_ != nullptr))
+        if (is_sound && batch.gate && !checked_.parts.empty() && batch.measure.has_value() == (measuring_ != nullptr))
             check_gate(batch, checked_.parts, library_, batch_diagnostics_);
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
@@ -401,6 +402,11 @@ private:
         if (workflow.steps.empty()) unreadable_ = true;  // its parameters may not have been read, either
         report_unfed_inputs(workflow, listed);
         if (!workflow.inputs.empty()) {
+            if (!checked_.batch.has_scans)
+                batch_diagnostics_.error(listed.position,
+                                         "the workflow '{}' reads a scan, but the batch has no scans; expected "
+                                         "`scans:` with a list of paths",
+                                         listed.file.string());
             takes_scans_ = true;
             takes_points_ |= workflow.inputs.front().kind == kind_of<PointCloud>();
             first_inputs_.insert(workflow.inputs.front().name);
@@ -553,9 +559,10 @@ private:
     }
 
     void report_idle_scans() {
-        if (!takes_scans_ && !checked_.batch.scans.empty() && !checked_.batch.workflows.empty())
-            batch_diagnostics_.warning(checked_.batch.scans.front().position,
-                                       "no workflow takes scans, so none of them is read");
+        const std::vector<BatchScan>& scans = checked_.batch.scans;
+        if (!takes_scans_ && !scans.empty() && !checked_.batch.workflows.empty())
+            batch_diagnostics_.error(scans.front().position, "no workflow of the batch takes scans; scans given: {}",
+                                     scans.size());
     }
 
     void report_idle_truths() {
@@ -568,7 +575,7 @@ private:
                 batch_diagnostics_.warning(
                     scan.truth.position, "`truth` has no effect without `measure:` in the batch: nothing is measured");
         }
-        if (batch.measure && !has_any && !batch.scans.empty())
+        if (batch.measure && !has_any && (!batch.scans.empty() || !batch.has_scans))
             batch_diagnostics_.error(batch.measure->position,
                                      "no scan has a truth, so nothing would be measured; expected `truth: FILE` at a "
                                      "scan");

@@ -85,6 +85,7 @@ struct BatchMeasure {
 /// A parsed batch file. In Settings, the position of a value is the position of its name.
 struct Batch {
     std::string file, name, summary;
+    bool has_scans = false;  ///< whether the key `scans` is given; a batch of workflows without inputs has no scans
     std::vector<BatchScan> scans;  ///< in the order of the entries; the scans of one entry are sorted by path
     std::vector<BatchWorkflow> workflows;
     Settings settings;

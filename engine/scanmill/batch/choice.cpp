@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/batch/choice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scanmill/base/error.hpp"
@@ -22,7 +24,7 @@ void require_all(const std::vector<std::string>& names, std::string_view noun, s
         const auto repeated = std::ranges::unique(known);
         known.erase(repeated.begin(), repeated.end());
         throw Error("the batch has no {} '{}'{}", noun, name, did_you_mean(name, known))
-            .hint("it has " + enumerated(known));
+            .hint(known.empty() ? fmt::format("it has no {}s", noun) : "it has " + enumerated(known));
     }
 }
 

@@ -96,13 +96,13 @@ const char* const workflow_grammar = R"json({
 const char* const batch_grammar = R"json({
 "$schema": "http://json-schema.org/draft-07/schema#",
 "title": "Scanmill batch",
-"type": "object", "required": ["scanmill", "batch", "scans", "workflows"], "additionalProperties": false,
+"type": "object", "required": ["scanmill", "batch", "workflows"], "additionalProperties": false,
 "properties": {
   "scanmill": {"const": 1, "description": "The version of the grammar."},
   "batch": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$", "description": "The batch's name."},
   "summary": {"type": ["string", "number", "boolean"], "description": "What the batch is for, in a sentence."},
   "scans": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/scan"},
-            "description": "The scans; paths count from the batch file's folder."},
+            "description": "The scans; paths count from the batch file's folder. Workflows without inputs need none."},
   "workflows": {"description": "The workflows that every scan runs under: files, whose paths count from the batch file's folder, or names of ready workflows.",
                 "if": {"type": "string"}, "then": {"$ref": "#/definitions/workflow"},
                 "else": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/workflow"}}},

@@ -7,6 +7,7 @@ namespace scanmill {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -92,9 +93,33 @@ TEST_F(PlanBatch, WorkflowWithoutInputs_RunsOnce) {
     EXPECT_THAT(checked_.parts[0].scans, IsEmpty());
     EXPECT_THAT(checked_.parts[1].scans, SizeIs(4));
     EXPECT_EQ(checked_.cells(), 5u);
+}
+
+TEST_F(PlanBatch, WithoutTheKeyScans_RunsWorkflowsWithoutInputs) {
+    folder_.write("none.yaml",
+                  "scanmill: 1\nparameters: {n: 1}\nsteps: [{make: }, {thin: {count: $n, size: 1 u}}]\n");
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nworkflows: none.yaml\nset: {n: {sweep: [1, 2, 3]}}\n"), IsEmpty());
+    ASSERT_THAT(checked_.parts, SizeIs(1));
+    EXPECT_THAT(checked_.parts[0].scans, IsEmpty());
+    EXPECT_EQ(checked_.cells(), 3u) << "one of each variant";
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nworkflows: none.yaml\nmeasure:\n"),
+                Contains(HasSubstr("no scan has a truth")));
+}
+
+TEST_F(PlanBatch, WorkflowThatReadsAScan_IsRefusedWithoutTheKeyScans) {
+    folder_.write("none.yaml", "scanmill: 1\nsteps: [{make: }]\n");
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nworkflows: [none.yaml, w.yaml]\n"),
+                ElementsAre(AllOf(StartsWith("b:3:24: the workflow '"),
+                                  HasSubstr("w.yaml' reads a scan, but the batch has no scans; expected `scans:`"))));
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nworkflows: w.yaml\ngate: {points: exact}\n"), SizeIs(1))
+        << "the gate is not checked without a cell";
+}
+
+TEST_F(PlanBatch, ScansThatNoWorkflowTakes_AreRefusedWithTheirNumber) {
+    folder_.write("none.yaml", "scanmill: 1\nsteps: [{make: }]\n");
     EXPECT_THAT(check("scanmill: 1\nbatch: b\nscans: [scans/*.ply]\nworkflows: none.yaml\n"),
-                ElementsAre("b:3:9: warning: no workflow takes scans, so none of them is read"));
-    EXPECT_EQ(checked_.cells(), 1u);
+                ElementsAre("b:3:9: no workflow of the batch takes scans; scans given: 4"));
+    EXPECT_TRUE(checked_.has_errors());
 }
 
 class FurtherInputs : public PlanBatch {
