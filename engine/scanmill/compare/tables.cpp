@@ -83,6 +83,22 @@ bool is_trouble(Verdict verdict) {
            verdict == Verdict::doubtful;
 }
 
+/// The scans or the variants of a matrix, in the order of the cells.
+struct MatrixAxis {
+    std::vector<std::string> names;
+    std::vector<bool> has_trouble;  ///< whether one of its cells did not pass
+    std::map<std::string, std::size_t> index;  ///< by name
+
+    void add(const std::string& name, bool trouble) {
+        const auto [found, is_new] = index.emplace(name, names.size());
+        if (is_new) {
+            names.push_back(name);
+            has_trouble.push_back(false);
+        }
+        if (trouble) has_trouble[found->second] = true;
+    }
+};
+
 }  // namespace
 
 std::string length_unit_text(const Metric& metric, LengthUnit lengths) {
@@ -185,25 +201,24 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
 
 ReportTable matrix(const Comparison& comparison, const std::string& metric, std::size_t most) {
     const bool with_workflow = has_several_workflows(comparison);
-    std::vector<std::string> scans, variants;
-    std::map<std::string, std::size_t> row_of_scan, column_of_variant;
-    std::vector<bool> has_trouble;
+    MatrixAxis scans, variants;
     std::set<std::string> units;
     for (const CellComparison& cell : comparison.cells) {
-        if (row_of_scan.emplace(cell.scan, scans.size()).second) {
-            scans.push_back(cell.scan);
-            has_trouble.push_back(false);
-        }
-        const std::string variant = variant_text(cell, with_workflow);
-        if (column_of_variant.emplace(variant, variants.size()).second) variants.push_back(variant);
-        if (is_trouble(cell.verdict)) has_trouble[row_of_scan[cell.scan]] = true;
+        scans.add(cell.scan, is_trouble(cell.verdict));
+        variants.add(variant_text(cell, with_workflow), is_trouble(cell.verdict));
         if (const auto value = number_of(cell, metric)) units.insert(length_unit_text(value->metric, value->lengths));
     }
     const bool one_unit = units.size() == 1;
-    std::vector<std::vector<std::string>> rows(scans.size(), std::vector<std::string>(variants.size() + 1, "-"));
-    for (std::size_t scan = 0; scan < scans.size(); ++scan) rows[scan][0] = scans[scan];
+    const bool by_variant = scans.names.size() == 1 && variants.names.size() > 1;
+    const MatrixAxis& down = by_variant ? variants : scans;
+    const MatrixAxis& across = by_variant ? scans : variants;
+    std::vector<std::vector<std::string>> rows(down.names.size(),
+                                               std::vector<std::string>(across.names.size() + 1, "-"));
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row][0] = down.names[row];
     for (const CellComparison& cell : comparison.cells) {
-        std::string& text = rows[row_of_scan[cell.scan]][1 + column_of_variant[variant_text(cell, with_workflow)]];
+        const std::size_t scan = scans.index.at(cell.scan);
+        const std::size_t variant = variants.index.at(variant_text(cell, with_workflow));
+        std::string& text = by_variant ? rows[variant][1 + scan] : rows[scan][1 + variant];
         const auto value = number_of(cell, metric);
         if (!value) {
             text = is_trouble(cell.verdict) ? name_of(cell.verdict) : "-";
@@ -218,15 +233,15 @@ ReportTable matrix(const Comparison& comparison, const std::string& metric, std:
     }
     const std::string unit = one_unit && !is_cost(metric) ? *units.begin() : "";
     ReportTable table{{unit.empty() ? metric : fmt::format("{} ({})", metric, unit)}, {}, {}};
-    table.headers.insert(table.headers.end(), variants.begin(), variants.end());
+    table.headers.insert(table.headers.end(), across.names.begin(), across.names.end());
     if (rows.size() <= most) {
         table.rows = std::move(rows);
         return table;
     }
     for (const bool trouble : {true, false})
-        for (std::size_t scan = 0; scan < rows.size() && table.rows.size() < most; ++scan)
-            if (has_trouble[scan] == trouble) table.rows.push_back(rows[scan]);
-    table.rest = fmt::format("and {} more scans", rows.size() - table.rows.size());
+        for (std::size_t row = 0; row < rows.size() && table.rows.size() < most; ++row)
+            if (down.has_trouble[row] == trouble) table.rows.push_back(rows[row]);
+    table.rest = fmt::format("and {} more {}", rows.size() - table.rows.size(), by_variant ? "variants" : "scans");
     return table;
 }
 

@@ -36,10 +36,10 @@ ReportTable change_table(const Comparison& comparison, std::size_t most);
 /// change_table() shows. Variants of a scan with the same text share a row. The table has at most `most` rows.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
-/// A table of one metric with a row per scan and a column per variant; the unit is in the first header. A value is
-/// followed by `!` if it regressed, and by `?` if its cell is doubtful. If a cell that did not pass lacks the value,
-/// the table shows the verdict. With more than `most` scans, the table has only `most` rows, and scans with such cells
-/// come first.
+/// A table of one metric with a row per scan and a column per variant, or with a row per variant if there is only one
+/// scan; the unit is in the first header. A value is followed by `!` if it regressed, and by `?` if its cell is
+/// doubtful. If a cell that did not pass lacks the value, the table shows the verdict. The table has at most `most`
+/// rows, and rows with such cells come first.
 ReportTable matrix(const Comparison& comparison, const std::string& metric, std::size_t most);
 
 /// The commands that reproduce regressed and failed cells. Equal commands appear once.

@@ -375,6 +375,21 @@ TEST(ReportTables, Matrix_ShowsScansAndVariants) {
     EXPECT_EQ(cut.rest, "and 1 more scans");
 }
 
+TEST(ReportTables, MatrixOfOneScan_HasARowPerVariant) {
+    RunDetails before = made_run(1), now = made_run(2, {{"hausdorff", "+1 %", {}}});
+    for (const char* variant : {"fine", "coarse", "thin"}) add_cell(before, "jobs/a.ply", variant, 0.5);
+    add_cell(now, "jobs/a.ply", "fine", 0.5);
+    add_cell(now, "jobs/a.ply", "coarse", 0.75);
+    add_cell(now, "jobs/a.ply", "thin", 0.5);
+    const ReportTable table = matrix(compared(now, before), "hausdorff", 10);
+    EXPECT_THAT(table.headers, ElementsAre("hausdorff (mm)", "a.ply"));
+    EXPECT_THAT(table.rows,
+                ElementsAre(ElementsAre("fine", "0.5"), ElementsAre("coarse", "0.75 !"), ElementsAre("thin", "0.5")));
+    const ReportTable cut = matrix(compared(now, before), "hausdorff", 2);
+    EXPECT_THAT(cut.rows, ElementsAre(testing::Contains("coarse"), testing::Contains("fine"))) << "trouble first";
+    EXPECT_EQ(cut.rest, "and 1 more variants");
+}
+
 TEST(ReportTables, EqualReasonsOfAScan_AreOneRow) {
     RunDetails now = made_run(2);
     for (const char* variant : {"fine", "coarse"}) {
