@@ -146,6 +146,23 @@ TEST_F(Batch, TwoWorkflows_ShareWhatIsEqual) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/v-scan_01.ply"));
 }
 
+TEST_F(Batch, WithoutScans_RunsEveryVariantOnce) {
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\nparameters: {views: 1}\nsteps:\n  - virtual-scan: {shape: sphere, views: "
+                  "$views, resolution: 5 %diag}\noutputs: {'{scan}.{variant}.ply': virtual-scan}\n");
+    folder_.write("b.yaml",
+                  "scanmill: 1\nbatch: b\nworkflows: w.yaml\nset: {views: {sweep: [1, 2]}}\ngate: {points: exact}\n");
+    const ProgramResult result = run_batch();
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/w.views=1.ply"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/w.views=2.ply"));
+    EXPECT_EQ(outputs().size(), 2u);
+    EXPECT_EQ(recorded(1)["cells"].size(), 2u);
+    const ProgramResult chosen = run_batch({"--scan", "w"});
+    EXPECT_EQ(chosen.exit_code, 2);
+    EXPECT_THAT(chosen.err, HasSubstr("it has no scans"));
+}
+
 /// Cached results belong to their inputs: the output is the same as without the cache.
 TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
     write_scans("scan", 1);

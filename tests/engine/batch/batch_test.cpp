@@ -105,8 +105,8 @@ sumary: It.
 TEST_F(BatchFile, WithoutItsParts_SaysWhichAreMissing) {
     EXPECT_THAT(findings(""), ElementsAre(HasSubstr("b: is empty; expected a batch")));
     EXPECT_THAT(findings("[]"), ElementsAre(HasSubstr("found a list; expected a batch")));
-    EXPECT_THAT(findings("summary: x\n"), ElementsAre(HasSubstr("`scanmill: 1`"), HasSubstr("`batch: NAME`"),
-                                                      HasSubstr("has no workflows")));
+    EXPECT_THAT(findings("summary: x\n"),
+                ElementsAre(HasSubstr("`scanmill: 1`"), HasSubstr("`batch: NAME`"), HasSubstr("has no workflows")));
     EXPECT_THAT(findings("scanmill: 2\nbatch: a b\nscans: []\nworkflows: []\n"),
                 ElementsAre(HasSubstr("'2'"), HasSubstr("'a b' is not a name for a batch"),
                             HasSubstr("the list of scans is empty"), HasSubstr("the list of workflows is empty")));

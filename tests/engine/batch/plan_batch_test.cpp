@@ -96,8 +96,7 @@ TEST_F(PlanBatch, WorkflowWithoutInputs_RunsOnce) {
 }
 
 TEST_F(PlanBatch, WithoutTheKeyScans_RunsWorkflowsWithoutInputs) {
-    folder_.write("none.yaml",
-                  "scanmill: 1\nparameters: {n: 1}\nsteps: [{make: }, {thin: {count: $n, size: 1 u}}]\n");
+    folder_.write("none.yaml", "scanmill: 1\nparameters: {n: 1}\nsteps: [{make: }, {thin: {count: $n, size: 1 u}}]\n");
     EXPECT_THAT(check("scanmill: 1\nbatch: b\nworkflows: none.yaml\nset: {n: {sweep: [1, 2, 3]}}\n"), IsEmpty());
     ASSERT_THAT(checked_.parts, SizeIs(1));
     EXPECT_THAT(checked_.parts[0].scans, IsEmpty());
