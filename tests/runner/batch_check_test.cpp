@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
@@ -58,6 +59,20 @@ TEST_F(CheckOfABatch, TwoScansThatWriteOneFile_AreFoundWithoutReadingThem) {
     EXPECT_THAT(found.err, AllOf(HasSubstr("nightly.yaml:3:9: scan 'scans/ok.pcd' under variant 'default' and scan "
                                            "'scans/ok.ply' under variant 'default' would both write 'ok.ply'"),
                                  HasSubstr("rename one of the scans")));
+}
+
+TEST_F(CheckOfABatch, OutputWhereThatOfAnotherWorkflowIsWrittenIfItFails_IsFound) {
+    for (const auto& [name, output] : {std::pair("one", "{scan}.ply"), std::pair("two", "failed/{scan}.ply")})
+        folder_.write(std::string(name) + ".yaml",
+                      std::string("scanmill: 1\nname: ") + name +
+                          "\ninputs: {scan: points}\nsteps: [{voxel-thin: {bin-size: 1 u}}]\noutputs: {'" + output +
+                          "': voxel-thin}\n");
+    const std::string head = "scanmill: 1\nbatch: nightly\nscans: [scans/a.xyz]\nworkflows: ";
+    const ProgramResult found = check(head + "[one.yaml, two.yaml]\n");
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, AllOf(HasSubstr("nightly.yaml:3:9: "), HasSubstr("of workflow 'one', if it fails, and "),
+                                 HasSubstr("would both write 'failed/a.ply'; put {workflow} into the output's name")));
+    EXPECT_EQ(check(head + "two.yaml\n").exit_code, 0);
 }
 
 TEST_F(CheckOfABatch, PlanOfEveryPart_IsPrinted) {

@@ -57,7 +57,6 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
             .hint("remove it, or choose another output folder")
             .remedy(Remedy::choose_output_folder);
     const fs::path failed = failed_of(folder_, file);
-    names_.add(failed.lexically_relative(folder_).string(), content, writer + ", if it fails,", values);
     for (const fs::path& written : {file, previous_of(file), failed}) require_free(written);
     return file;
 }
@@ -85,7 +84,7 @@ OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
 
 fs::path previous_of(const fs::path& file) { return file.string() + ".previous"; }
 
-fs::path failed_folder(const fs::path& folder) { return folder / "failed"; }
+fs::path failed_folder(const fs::path& folder) { return folder / failed_folder_name; }
 
 fs::path failed_of(const fs::path& folder, const fs::path& file) {
     return failed_folder(folder) / file.lexically_relative(folder);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <utility>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
@@ -22,28 +23,38 @@ std::string OutputNames::way_out(const Entry& one, const Entry& other) {
     if (a.workflow != b.workflow) differing.push_back("{workflow}");
     if (differing.size() > 1) return "put one of " + enumerated(differing) + " into the output's name";
     if (!differing.empty()) return "put " + differing.front() + " into the output's name";
+    if (one.is_of_failure != other.is_of_failure)
+        return fmt::format("put the output into another folder than '{}'", failed_folder_name);
     return one.writer == other.writer ? "give the outputs, or the workflows, different names"
                                       : "no placeholder differs between the two; rename one of the scans";
 }
 
 OutputNames::Added OutputNames::add(const std::string& name, const OutputContent& content, const std::string& writer,
                                     const TemplateValues& values) {
+    const Added added = reserve(name, {content, writer, values, false});
+    if (added.is_new) reserve(fs::path(failed_folder_name) / name, {content, writer, values, true});
+    return added;
+}
+
+OutputNames::Added OutputNames::reserve(const fs::path& name, Entry entry) {
     const fs::path file = folder_ / name;
     if (const auto found = files_.find(file); found != files_.end()) {
-        if (found->second.content != content)
-            throw Error("{} and {} would both write '{}'", found->second.writer, writer, file.string())
-                .hint(way_out(found->second, {content, writer, values}));
+        const Entry& other = found->second;
+        if (other.content != entry.content || other.is_of_failure != entry.is_of_failure)
+            throw Error("{} and {} would both write '{}'", other.text(), entry.text(), file.string())
+                .hint(way_out(other, entry));
         return {file, false};
     }
     if (const auto folder = folders_.find(file); folder != folders_.end())
-        throw Error("{} would write the file '{}', which is the folder that {} writes into", writer, file.string(),
-                    folder->second);
+        throw Error("{} would write the file '{}', which is the folder that {} writes into", entry.text(),
+                    file.string(), folder->second);
     for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path())
         if (const auto other = files_.find(part); other != files_.end())
-            throw Error("{} would write '{}' into a folder that {} writes as a file", writer, file.string(),
-                        other->second.writer);
-    files_.emplace(file, Entry{content, writer, values});
-    for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path()) folders_.emplace(part, writer);
+            throw Error("{} would write '{}' into a folder that {} writes as a file", entry.text(), file.string(),
+                        other->second.text());
+    for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path())
+        folders_.emplace(part, entry.text());
+    files_.emplace(file, std::move(entry));
     return {file, true};
 }
 

@@ -6,10 +6,14 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "scanmill/plan/plan.hpp"
 
 namespace scanmill {
+
+/// The folder below the output folder that gets the outputs of cells that failed by an expectation.
+inline constexpr std::string_view failed_folder_name = "failed";
 
 /// The content of an output file: one output port of one node, for one scan under one workflow.
 struct OutputContent {
@@ -27,9 +31,11 @@ public:
         std::filesystem::path file;
         bool is_new = false;  ///< false: the same content was added before
     };
-    /// Adds an output. `name` is relative to the folder, in normal form. `writer` names the cell in messages, and
-    /// `values` are the cell's placeholders, for hints. Throws Error if an output with other content has the same name,
-    /// and if the file of one output is the folder of another.
+    /// Adds an output and its name below `failed_folder_name`. `name` is relative to the folder, in normal form.
+    /// `writer` names the cell in messages, and `values` are the cell's placeholders, for hints. Throws Error if an
+    /// output with other content has the same name, and if the file of one output is the folder of another. A name
+    /// below `failed_folder_name` that another output would take if its cell fails is refused whatever its content: the
+    /// next success of that cell would remove the file.
     Added add(const std::string& name, const OutputContent& content, const std::string& writer,
               const TemplateValues& values = {});
 
@@ -38,8 +44,12 @@ private:
         OutputContent content;
         std::string writer;
         TemplateValues values;
+        bool is_of_failure = false;  ///< written only if the cell fails by an expectation
+
+        std::string text() const { return is_of_failure ? writer + ", if it fails," : writer; }
     };
 
+    Added reserve(const std::filesystem::path& name, Entry entry);
     static std::string way_out(const Entry& one, const Entry& other);
 
     std::filesystem::path folder_;

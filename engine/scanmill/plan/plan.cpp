@@ -13,6 +13,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/plan/expectation.hpp"
+#include "scanmill/plan/output_names.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/plan/wiring.hpp"
 #include "scanmill/workflow/grammar.hpp"
@@ -69,6 +70,7 @@ public:
         for (const WorkflowOutput& output : plan_.workflow.outputs) check_template(output, diagnostics_);
         check_shared_files();
         check_folders();
+        check_failed_folder();
         return std::move(plan_);
     }
 
@@ -251,6 +253,22 @@ private:
             if (const auto file = files.lower_bound(folder); file != files.end() && file->starts_with(folder))
                 diagnostics_.error(output.position, "'{}' is an output and also the folder of '{}'", output.file,
                                    *file);
+        }
+    }
+
+    /// Outputs below failed_folder_name that another output would replace, or remove.
+    void check_failed_folder() {
+        std::set<std::string_view> files;
+        for (const WorkflowOutput& output : plan_.workflow.outputs) files.insert(output.file);
+        const std::string folder = fmt::format("{}/", failed_folder_name);
+        for (const WorkflowOutput& output : plan_.workflow.outputs) {
+            if (!output.file.starts_with(folder)) continue;
+            const std::string_view other = std::string_view(output.file).substr(folder.size());
+            if (files.contains(other))
+                diagnostics_.error(output.position,
+                                   "'{}' is where '{}' is written if a step does not meet its `expect`; put the output "
+                                   "into another folder",
+                                   output.file, other);
         }
     }
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -102,6 +104,17 @@ TEST_F(OutputFilesTest, FailedOutputThatIsAnothersFile_IsRefusedInEitherOrder) {
     others.add("failed/a.ply", {"l", ""}, "B");
     EXPECT_NO_THROW(others.add("b.ply", {"k", ""}, "A"));
     EXPECT_THAT(sentence_of([&] { others.add("a.ply", {"k", ""}, "A"); }), HasSubstr("would both write"));
+}
+
+/// The next success of the first output would remove the second.
+TEST_F(OutputFilesTest, SameContentBelowFailed_IsRefusedInEitherOrder) {
+    for (const auto& [first, second] : {std::pair("a.ply", "failed/a.ply"), std::pair("failed/a.ply", "a.ply")}) {
+        OutputFiles outputs = files();
+        outputs.add(first, {"k", ""}, "A");
+        const Error error = error_of([&] { outputs.add(second, {"k", ""}, "A"); });
+        EXPECT_THAT(error.sentence(), AllOf(HasSubstr("A, if it fails,"), HasSubstr("failed/a.ply'"))) << first;
+        EXPECT_THAT(error.hint(), HasSubstr("another folder than 'failed'")) << first;
+    }
 }
 
 TEST_F(OutputFilesTest, FailedFolderThatLeadsOut_IsRefused) {

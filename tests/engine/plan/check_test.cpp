@@ -213,6 +213,14 @@ TEST_F(Check, OutputThatIsAnothersFolder_IsAnError) {
                 ElementsAre(HasSubstr("'a.ply' is an output and also the folder of 'a.ply/b.ply'")));
 }
 
+TEST_F(Check, OutputWhereAnotherIsWrittenIfItFails_IsAnError) {
+    const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs:\n";
+    EXPECT_THAT(findings(head + "  'failed/{scan}.ply': thin\n  '{scan}.ply': thin\n"),
+                ElementsAre(AllOf(StartsWith("w:6:3: "), HasSubstr("'failed/{scan}.ply' is where '{scan}.ply'"),
+                                  HasSubstr("another folder"))));
+    EXPECT_THAT(findings(head + "  'failed/{scan}.ply': thin\n  'failed/a/{scan}.ply': thin\n"), IsEmpty());
+}
+
 TEST_F(Check, VariantsThatWouldWriteOneFile_AskForVariantInTheName) {
     const std::string head =
         "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin: {count: {sweep: [1, 2]}}\noutputs:\n";
