@@ -485,6 +485,20 @@ bool is_sound(const TriangleMesh& mesh, const MeshTopology& shape, const RepairP
            std::ranges::count(facing_wrong(mesh, context), u8(1)) == 0;
 }
 
+/// Explains why a mesh without boundary has one after the repair.
+std::string why_opened(std::size_t split_edges, std::size_t removed_triangles) {
+    if (split_edges > 0)
+        return fmt::format(
+            "{} three or more triangles, where parts touch or share a wall, and the parts were separated there; write "
+            "them to separate files, or compare the volume after `fill-holes`",
+            count_text(split_edges, "edge had", "edges had"));
+    if (removed_triangles > 0)
+        return fmt::format("{} removed that closed it; mesh the points again",
+                           count_text(removed_triangles, "triangle was", "triangles were"));
+    return "the surface is one-sided, such as a Klein bottle, and was cut; it encloses no volume; mesh the points "
+           "again";
+}
+
 }  // namespace
 
 RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Context& context) {
@@ -495,18 +509,16 @@ RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Contex
     RepairResult result =
         is_unchanged ? RepairResult{.mesh = mesh, .was_closed = before.closed} : Repair(mesh, params, context).run();
     const MeshTopology after = is_unchanged ? before : topology(result.mesh);
+    const std::size_t removed = mesh.triangles.size() - result.mesh.triangles.size();
     if (after.boundary_loops > 0 && result.was_closed)
-        context.doubt(fmt::format(
-            "the mesh had no boundary, and has {} now: {} three or more triangles, where parts touch or share a wall, "
-            "and the parts were separated there; write them to separate files, or compare the volume after "
-            "`fill-holes`",
-            count_text(after.boundary_loops, "boundary loop", "boundary loops"),
-            count_text(result.split_edges, "edge had", "edges had")));
+        context.doubt(fmt::format("the mesh had no boundary, and has {} now: {}",
+                                  count_text(after.boundary_loops, "boundary loop", "boundary loops"),
+                                  why_opened(result.split_edges, removed)));
     context.metric("oriented", static_cast<double>(result.oriented));
     context.metric("stitched", static_cast<double>(result.stitched));
     context.metric("split-vertices", static_cast<double>(result.split_vertices));
     context.metric("split-edges", static_cast<double>(result.split_edges));
-    context.metric("removed-triangles", static_cast<double>(mesh.triangles.size() - result.mesh.triangles.size()));
+    context.metric("removed-triangles", static_cast<double>(removed));
     context.metric("removed-components", static_cast<double>(result.removed_components));
     context.metric("removed-points", static_cast<double>(result.unused_points));
     context.metric("flipped", static_cast<double>(result.flipped));

@@ -3,7 +3,9 @@
 /// Simple meshes from corners, and meshes made from others.
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -78,6 +80,39 @@ inline TriangleMesh clustered(const TriangleMesh& mesh, double size) {
     TriangleMesh result = mesh;
     result.triangles = std::move(triangles);
     return result;
+}
+
+/// A closed surface with one side: a figure eight that makes half a turn on its way around the z axis. It crosses
+/// itself between its vertices; two triangles at every edge. Pre: `around` at least 3, `along` even and at least 4.
+inline TriangleMesh klein_bottle(u32 around, u32 along) {
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    const auto vertex = [&](u32 i, u32 j) {
+        const u32 row = j % along;
+        return i < around ? i * along + row : along - 1 - row;
+    };
+    for (u32 i = 0; i < around; ++i)
+        for (u32 j = 0; j < along; ++j) {
+            const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * (j + 0.5) / along;
+            const double x = std::sin(v), y = std::sin(2 * v), cosine = std::cos(u / 2), sine = std::sin(u / 2);
+            const double radius = 3 + cosine * x - sine * y;
+            positions.emplace_back(radius * std::cos(u), radius * std::sin(u), sine * x + cosine * y);
+            triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+            triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+        }
+    return soup(std::move(positions), std::move(triangles));
+}
+
+/// Every triangle with its own three vertices.
+inline TriangleMesh separate(const TriangleMesh& mesh) {
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (const Triangle& triangle : mesh.triangles) {
+        const u32 first = static_cast<u32>(positions.size());
+        for (const u32 vertex : triangle) positions.push_back(mesh.positions[vertex]);
+        triangles.push_back({first, first + 1, first + 2});
+    }
+    return soup(std::move(positions), std::move(triangles));
 }
 
 /// [0, width] × [0, depth] at this height, two triangles, facing up.

@@ -62,6 +62,30 @@ TEST(FillHoles, ASurfaceThatFacesInwards_FacesOutwardsOnceItIsClosed) {
     EXPECT_THAT(result.warnings, Contains(HasSubstr("12 triangles were turned")));
 }
 
+TEST(FillHoles, ACavityFacesInwards_ABodyInItOutwards) {
+    const TriangleMesh spheres[] = {geodesic_sphere(3, 4), geodesic_sphere(2, 4), geodesic_sphere(1, 4)};
+    const double volume = signed_volume(spheres[0]) - signed_volume(spheres[1]) + signed_volume(spheres[2]);
+    const auto triangles = static_cast<u32>(spheres[0].triangles.size());
+    for (unsigned turned_inwards = 0; turned_inwards < 8; ++turned_inwards) {
+        const auto part = [&](unsigned i) {
+            return (turned_inwards >> i & 1u) != 0 ? inside_out(spheres[i]) : spheres[i];
+        };
+        const TriangleMesh nested = both(both(part(0), part(1)), part(2));
+        const Filled result = filled(without(nested, [&](u32 t) { return t % triangles == 7; }));
+        EXPECT_EQ(result.filled, 3u) << turned_inwards;
+        EXPECT_TRUE(topology(result.mesh).closed) << turned_inwards;
+        EXPECT_NEAR(signed_volume(result.mesh), volume, 1e-9) << turned_inwards;
+    }
+}
+
+TEST(FillHoles, ASoupOfAKleinBottle_IsClosedAsAWhole_AndDoubtful) {
+    const Filled result = filled(separate(klein_bottle(24, 12)));
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_GT(signed_volume(result.mesh), 0);
+    EXPECT_EQ(self_intersections_of(result.mesh), 0u);
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("closed as a whole")));
+}
+
 TEST(FillHoles, OfAClosedMesh_AddsOnlyTheMarks) {
     const TriangleMesh mesh = cube();
     const Filled result = filled(mesh);

@@ -62,5 +62,11 @@ TEST(FillHolesRefuses, NeighboursOrientedDifferently) {
     EXPECT_FALSE(error.hint().empty());
 }
 
+TEST(FillHolesRefuses, AKleinBottle) {
+    const Error error = refusal(klein_bottle(24, 12));
+    EXPECT_THAT(error.sentence(), HasSubstr("in the same direction"));
+    EXPECT_THAT(error.hint(), HasSubstr("one-sided"));
+}
+
 }  // namespace
 }  // namespace scanmill::test

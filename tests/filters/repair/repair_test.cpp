@@ -32,17 +32,6 @@ Repaired repaired(const TriangleMesh& mesh, const RepairParams& params = {}) {
     return {repair(mesh, params, context), doubts_of(context), context.warnings(), context.metrics()};
 }
 
-/// Every triangle with its own three vertices.
-TriangleMesh separate(const TriangleMesh& mesh) {
-    Array<Vec3> positions;
-    Array<Triangle> triangles;
-    for (const Triangle& triangle : mesh.triangles) {
-        const u32 first = static_cast<u32>(positions.size());
-        for (const u32 vertex : triangle) positions.push_back(mesh.positions[vertex]);
-        triangles.push_back({first, first + 1, first + 2});
-    }
-    return soup(std::move(positions), std::move(triangles));
-}
 /// Some triangles reversed.
 TriangleMesh muddled(const TriangleMesh& mesh, std::uint64_t seed, double share) {
     Random random(seed);
@@ -199,6 +188,25 @@ TEST(Repair, AMoebiusStrip_IsCut) {
     expect_manifold(result.mesh);
     EXPECT_GT(result.split_vertices, 0u);
     EXPECT_EQ(result.mesh.triangles.size(), 5u);
+}
+
+TEST(Repair, AKleinBottle_IsCutAndDoubtful) {
+    const TriangleMesh bottle = klein_bottle(24, 12);
+    ASSERT_EQ(topology(bottle).boundary_edges, 0u);
+    for (const TriangleMesh& mesh : {bottle, separate(bottle)}) {
+        const Repaired result = repaired(mesh);
+        expect_manifold(result.mesh);
+        EXPECT_EQ(result.mesh.triangles.size(), bottle.triangles.size());
+        EXPECT_NEAR(area(result.mesh), area(bottle), 1e-9);
+        EXPECT_GT(result.metric("boundary-loops"), 0);
+        EXPECT_THAT(result.doubts, ElementsAre(AllOf(HasSubstr("the mesh had no boundary"), HasSubstr("one-sided"))));
+    }
+}
+
+TEST(Repair, TrianglesThatCoverEachOther_AreOpenAndDoubtful) {
+    const Repaired result = repaired(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}));
+    EXPECT_EQ(result.mesh.triangles.size(), 1u);
+    EXPECT_THAT(result.doubts, ElementsAre(HasSubstr("1 triangle was removed")));
 }
 
 TEST(Repair, DropsTriangles_WithARepeatedVertexOrASecondTime) {
