@@ -222,6 +222,16 @@ TEST(Poisson, NormalsOnAnySide_AreDoubtful) {
     EXPECT_THAT(result.doubts, Contains(HasSubstr("the surface faces away from the normals of the nearest points")));
 }
 
+TEST(Poisson, NormalsReversedOnOneHalf_AreDoubtful) {
+    const PointCloud sphere = fibonacci_sphere(5000);
+    const PointCloud half = with_normals(sphere, [&](std::size_t row) {
+        return Vec3((sphere.positions[row].x() > 0 ? 1 : -1) * sphere.positions[row]);
+    });
+    const Made result = made(half, with(6, 0));
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("the surface faces away from the normals of the nearest points")));
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("of the area is far from all points")));
+}
+
 TEST(Poisson, ASheet_ReachesTheCube) {
     // No side of the plane is closed: the surface ends where the cube ends, a quarter of the sheet beyond the points.
     const Made result = made(sheet(30), with(6, 0));
