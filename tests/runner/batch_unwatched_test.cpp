@@ -221,6 +221,32 @@ TEST_F(Unwatched, FolderThatBecameReadOnly_IsAWarning) {
     EXPECT_TRUE(exists("sub/scan_01.ply"));
 }
 
+TEST_F(Unwatched, FailedFolderThatIsReadOnly_IsOneWarning) {
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\n    expect: {points: 99}\n"
+                  "outputs: {'{scan}.ply': test-step}\n");
+    write_scans("scan", 2);
+    write_batch("scans/*.xyz");
+    std::filesystem::create_directories(folder_ / "out/failed");
+    using std::filesystem::perms;
+    std::filesystem::permissions(folder_.path(), perms::all);
+    std::filesystem::permissions(folder_ / "out", perms::all);
+    std::filesystem::permissions(folder_ / "out/failed",
+                                 perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
+    ProgramOptions unprivileged = options();
+    unprivileged.without_rights = true;
+    const ProgramResult result =
+        scanmill_program({"batch", "b.yaml", "-o", "out", "--no-cache", "-j", "1"}, unprivileged);
+    std::filesystem::permissions(folder_ / "out/failed", perms::owner_all);
+    if (result.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_EQ(times(result.err, "warning: "), 1u) << result.err;
+    EXPECT_THAT(result.err, ContainsRegex("outputs of failed cells cannot be written to .*out/failed'.*Permission"));
+    EXPECT_EQ(times(result.err, "error: "), 2u) << result.err;
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/failed"));
+    EXPECT_EQ(count(recorded(1)["cells"], "outcome", "failed"), 2u);
+}
+
 TEST_F(Unwatched, InputThatAnOutputWouldBeMovedTo_IsRefusedBeforeTheRun) {
     write_workflow("1");
     folder_.write("out/a.default.ply.previous", "1 0 0\n");
