@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cocone/candidates.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "scanmill/base/elementary.hpp"
+#include "scanmill/base/parallel.hpp"
+
+namespace scanmill::cocones {
+
+namespace {
+
+constexpr std::size_t chunk = 1 << 12;
+
+/// The unit vector in a facet, away from and at a right angle to its edge from `a` to `b`, towards its third corner.
+Vec3 away_from_edge(const Vec3& a, const Vec3& b, const Vec3& third) {
+    const Vec3 along = (b - a).normalized(), to = third - a;
+    return (to - to.dot(along) * along).normalized();
+}
+
+/// A facet at a vertex: its other two corners, and in it the directions away from the edges to them.
+struct FanFacet {
+    Side side;
+    std::array<u32, 2> ends;
+    std::array<Vec3, 2> away;
+    bool alive = true;
+};
+
+/// Whether some of the facets form a closed fan in which neighbours continue each other. Removes facets without a
+/// continuation at one of their two edges until there is none; what remains contains such a fan.
+bool has_closed_fan(std::vector<FanFacet>& facets, double least_cosine) {
+    const auto continues = [&](const FanFacet& facet, std::size_t end) {
+        return std::ranges::any_of(facets, [&](const FanFacet& other) {
+            if (!other.alive || &other == &facet) return false;
+            for (std::size_t k = 0; k < 2; ++k)
+                if (other.ends[k] == facet.ends[end] && -other.away[k].dot(facet.away[end]) >= least_cosine) return true;
+            return false;
+        });
+    };
+    std::size_t left = facets.size();
+    for (bool changes = true; changes && left > 2;) {
+        changes = false;
+        for (FanFacet& facet : facets)
+            if (facet.alive && !(continues(facet, 0) && continues(facet, 1))) {
+                facet.alive = false;
+                changes = true;
+                --left;
+            }
+    }
+    return left > 2;
+}
+
+/// The facets of the set at a vertex.
+void collect(const Diagram& diagram, const FacetSet& set, u32 vertex, std::vector<FanFacet>& fan) {
+    const TetMesh& tets = diagram.tets;
+    fan.clear();
+    for (const u32 cell : diagram.cells_at[vertex])
+        for (int i = 0; i < 4; ++i) {
+            if (!set.contains(cell, i) || !owns_facet(tets, cell, i)) continue;
+            Triangle corners = corners_of(tets, {cell, i});
+            const auto own = std::ranges::find(corners, vertex);
+            if (own == corners.end()) continue;
+            std::ranges::rotate(corners, own);
+            const std::array<Vec3, 3> p{tets.positions[corners[0]], tets.positions[corners[1]],
+                                        tets.positions[corners[2]]};
+            fan.push_back({{cell, i},
+                           {corners[1], corners[2]},
+                           {away_from_edge(p[0], p[1], p[2]), away_from_edge(p[0], p[2], p[1])}});
+        }
+}
+
+}  // namespace
+
+FacetSet candidates(const Diagram& diagram, const Sampling& sampling, double lid_factor, Context& context) {
+    const TetMesh& tets = diagram.tets;
+    const auto spans_opening = [&](const Triangle& corners) {
+        double spacing = 0, longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (sampling.boundary[corners[k]] == 0) return false;
+            spacing = std::max(spacing, sampling.spacing[corners[k]]);
+            longest = std::max(longest, (tets.positions[corners[k]] - tets.positions[corners[(k + 1) % 3]]).norm());
+        }
+        return longest > lid_factor * spacing;
+    };
+    Array<u8> bits(tets.cells.size());
+    for_each_chunk(context.threads(), bits.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        for (std::size_t c = begin; c < end; ++c) {
+            const u32 cell = static_cast<u32>(c);
+            unsigned chosen = 0;
+            for (int i = 0; i < 4; ++i) {
+                const unsigned hits = unsigned(diagram.hits[cell]) >> (4 * i) & 15u;
+                if (hits == 0) continue;
+                bool any_flat = false, flat_agree = true, all_agree = true;
+                for (int j = 0; j < 4; ++j) {
+                    if (j == i) continue;
+                    const bool agrees = (hits >> j & 1u) != 0;
+                    const bool is_flat = sampling.flat[tets.cells[cell][static_cast<std::size_t>(j)]] == 1;
+                    any_flat |= is_flat;
+                    flat_agree &= agrees || !is_flat;
+                    all_agree &= agrees;
+                }
+                if ((any_flat ? flat_agree : all_agree) && !spans_opening(corners_of(tets, {cell, i}))) chosen |= 1u << i;
+            }
+            bits[cell] = static_cast<u8>(chosen);
+        }
+    });
+    return FacetSet(std::move(bits));
+}
+
+Array<u8> prune(const Diagram& diagram, FacetSet& set, double prune_angle, Context& context) {
+    const TetMesh& tets = diagram.tets;
+    const double least_cosine = elementary::turn_of(prune_angle).cosine;
+    Array<u8> umbrellas(tets.positions.size());
+    Array<u8> dangling(tets.cells.size(), u8(0));  // by owner cell, one bit per facet
+    for (bool changes = true; changes;) {
+        for_each_chunk(context.threads(), umbrellas.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            context.check_cancelled();
+            std::vector<FanFacet> fan;
+            for (std::size_t vertex = begin; vertex < end; ++vertex) {
+                collect(diagram, set, static_cast<u32>(vertex), fan);
+                umbrellas[vertex] = has_closed_fan(fan, least_cosine);
+                for (const FanFacet& facet : fan)
+                    if (umbrellas[vertex] == 1 && !facet.alive)
+                        std::atomic_ref(dangling[facet.side.cell])
+                            .fetch_or(static_cast<u8>(1 << facet.side.corner), std::memory_order_relaxed);
+            }
+        });
+        changes = false;
+        for (u32 cell = 0; cell < dangling.size(); ++cell)
+            for (unsigned left = std::exchange(dangling[cell], u8(0)); left != 0; left &= left - 1) {
+                set.remove(tets, {cell, std::countr_zero(left)});
+                changes = true;
+            }
+    }
+    return umbrellas;
+}
+
+}  // namespace scanmill::cocones

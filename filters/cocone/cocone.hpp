@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Cocone: the triangles of a Delaunay tetrahedralisation that lie along the scanned surface, as a manifold that stays
+/// open where the scan is.
+///
+/// Terms (pole, cocone, cocone neighbour) are those of geometry/tets/voronoi.hpp.
+///
+/// 1. A point is *flat* if the surface is well sampled there. Its cocone must not reach farther than 1 / `ratio` of the
+///    distance to the nearer pole, and the pole directions of its cocone neighbours must differ from its own by at most
+///    `normal_angle`. A point that passes the first test only is flat, too, if it has a flat cocone neighbour whose
+///    direction agrees. All other points are boundary points. So are points whose 16 nearest neighbours, seen in the
+///    tangent plane, leave a gap wider than `gap_angle`: the test with poles alone finds a third of a gently curved
+///    rim.
+/// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, and it has one.
+///    Triangles between boundary points alone with an edge longer than `lid_factor` local spacings span an opening and
+///    are no candidates. The local spacing is the mean distance to the six nearest neighbours.
+/// 3. Candidates with a free edge, or an edge where all of them meet at less than 180° - `prune_angle`, are removed
+///    repeatedly, where both ends of the edge have a closed fan of candidates.
+/// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the others.
+///
+/// Source: Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001 for the boundary points; Woo, Dey 2005, section 2. The test
+/// for gaps and the one for spanning triangles are our own.
+
+#include <optional>
+
+#include "scanmill/data/features.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/data/tets.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct CoconeParams {
+    /// The cocone's half-opening about the tangent plane; 5 to 40 degrees.
+    Angle cone_angle = Angle::degrees(22.5);
+    /// The least angle between the outer sides of two triangles that do not continue each other; 90 to 170 degrees.
+    Angle prune_angle = Angle::degrees(120);
+    /// 10 to 90 degrees.
+    Angle normal_angle = Angle::degrees(60);
+    /// At least 1.
+    double ratio = 1.2;
+    /// 60 to 360 degrees.
+    Angle gap_angle = Angle::degrees(100);
+    /// Above 0, in local spacings.
+    double lid_factor = 2.5;
+};
+
+struct CoconeResult {
+    /// The surface; each edge has one or two triangles. Its vertices are those of its triangles, in input order, with
+    /// their columns and three more: `pole-normal` (3 × float64, outwards), `flat` and `boundary` (uint8).
+    TriangleMesh mesh;
+    /// The boundary loops of the mesh.
+    FeatureGraph features;
+    /// Points of the input in no triangle.
+    std::size_t unused = 0;
+    std::size_t boundary_points = 0;
+    /// Points that are flat by the test with poles.
+    std::size_t pole_flat = 0;
+    std::size_t loops = 0;
+};
+
+/// Pre:  a tetrahedralisation made by delaunay() without weights; parameters in their ranges. Throws Error otherwise,
+///       and if there is no triangle.
+/// Post: see CoconeResult. Closed components face outwards, and cavities inwards. An open component faces away from its
+///       own lowest point. The bytes do not depend on the number of threads.
+/// Ties: a direction exactly on a limit of a cocone is inside.
+/// Cost: linear in the cells, and a search for 16 neighbours of each point; about 90 bytes per cell.
+/// Metrics: see plugin.cpp.
+CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& context);
+
+}  // namespace scanmill

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Sets of facets of a tetrahedralisation, and rotations around their edges.
+
+#include <optional>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/tets/edge_walk.hpp"
+#include "scanmill/geometry/tets/voronoi.hpp"
+
+namespace scanmill::cocones {
+
+/// A facet, seen from one of its cells: the facet opposite to a corner.
+struct Side {
+    u32 cell = TetMesh::outside_hull;
+    int corner = 0;
+
+    bool is_cell() const { return cell != TetMesh::outside_hull; }
+    bool operator==(const Side&) const = default;
+};
+
+/// The same facet, seen from its other cell; at the hull, is_cell() is false. Pre: side.is_cell().
+inline Side other_side(const TetMesh& tets, const Side& side) {
+    const u32 across = tets.neighbours[side.cell][static_cast<std::size_t>(side.corner)];
+    return across == TetMesh::outside_hull ? Side{} : Side{across, corner_across(tets, side.cell, side.corner)};
+}
+
+inline int corner_of(const TetMesh& tets, u32 cell, u32 vertex) {
+    const Tetrahedron& corners = tets.cells[cell];
+    return corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : corners[2] == vertex ? 2 : 3;
+}
+
+/// The facet's corners, counter-clockwise seen from outside the cell.
+inline Triangle corners_of(const TetMesh& tets, const Side& side) {
+    const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(side.corner)];
+    const Tetrahedron& corners = tets.cells[side.cell];
+    return {corners[i], corners[j], corners[k]};
+}
+
+/// By cell, bit i: whether the facet opposite to corner i is in the set. The two cells of a facet agree.
+class FacetSet {
+public:
+    explicit FacetSet(std::size_t cells) : bits_(cells, u8(0)) {}
+    explicit FacetSet(Array<u8> bits) : bits_(std::move(bits)) {}
+
+    bool contains(u32 cell, int corner) const { return (bits_[cell] >> corner & 1) != 0; }
+    bool contains(const Side& side) const { return contains(side.cell, side.corner); }
+    unsigned of(u32 cell) const { return bits_[cell]; }
+    void add(const TetMesh& tets, const Side& side) {
+        bits_[side.cell] = static_cast<u8>(bits_[side.cell] | 1 << side.corner);
+        if (const Side other = other_side(tets, side); other.is_cell())
+            bits_[other.cell] = static_cast<u8>(bits_[other.cell] | 1 << other.corner);
+    }
+    void remove(const TetMesh& tets, const Side& side) {
+        bits_[side.cell] = static_cast<u8>(bits_[side.cell] & ~(1 << side.corner));
+        if (const Side other = other_side(tets, side); other.is_cell())
+            bits_[other.cell] = static_cast<u8>(bits_[other.cell] & ~(1 << other.corner));
+    }
+
+private:
+    Array<u8> bits_;
+};
+
+/// Rotates around an edge of a facet, from the facet into side.cell and on from cell to cell. The edge is opposite to
+/// the facet's corner `third`. Calls visit(Side) for each facet at the edge, seen from the cell before it, until visit
+/// returns true, or the hull is reached, or the turn comes back to the facet. Returns whether the hull was reached.
+template <class Visit>
+bool rotate(const TetMesh& tets, const Side& side, u32 third, const Visit& visit) {
+    const u32 behind = tets.neighbours[side.cell][static_cast<std::size_t>(side.corner)];
+    EdgeWalk walk(tets, side.cell, corner_of(tets, side.cell, third), side.corner);
+    while (true) {
+        if (walk.next() == side.cell && walk.cell() == behind) return false;
+        if (visit(Side{walk.cell(), walk.across()})) return false;
+        if (walk.next() == TetMesh::outside_hull) return true;
+        walk.step();
+    }
+}
+
+/// Calls visit(Side) for every facet at the edge, except the given one.
+template <class Visit>
+void for_each_facet_at(const TetMesh& tets, const Side& side, u32 third, const Visit& visit) {
+    const auto go_on = [&](const Side& facet) {
+        visit(facet);
+        return false;
+    };
+    if (!rotate(tets, side, third, go_on)) return;
+    if (const Side other = other_side(tets, side); other.is_cell()) rotate(tets, other, third, go_on);
+}
+
+/// A facet with an outer side. `inner`: whether side.cell is its inner cell.
+struct OrientedFacet {
+    Side side;
+    bool inner;
+
+    bool operator==(const OrientedFacet&) const = default;
+};
+
+/// The facet of the set that continues an oriented facet across an edge: the first one seen from the outer side, with
+/// its outer side towards it. The edge is opposite to the facet's corner `third`. Space outside the hull counts as one
+/// cell.
+inline std::optional<OrientedFacet> continuation(const TetMesh& tets, const FacetSet& set, const OrientedFacet& facet,
+                                                 u32 third) {
+    const Side other = other_side(tets, facet.side);
+    const Side &outer = facet.inner ? other : facet.side, &inner = facet.inner ? facet.side : other;
+    std::optional<OrientedFacet> found;
+    if (outer.is_cell()) {
+        const bool at_hull = rotate(tets, outer, third, [&](const Side& side) {
+            if (set.contains(side)) found = {side, false};
+            return found.has_value();
+        });
+        if (found || !at_hull) return found;
+    }
+    // Beyond the hull, the turn goes on from the hull's other facet at the edge, which is found from behind.
+    if (inner.is_cell())
+        rotate(tets, inner, third, [&](const Side& side) {
+            if (set.contains(side)) found = {side, true};
+            return false;
+        });
+    return found;
+}
+
+}  // namespace scanmill::cocones

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cocone/surface.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+
+#include "cocone/candidates.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
+
+namespace scanmill::cocones {
+
+namespace {
+
+/// Takes a manifold from the candidates by walking over their outer side.
+class SurfaceWalk {
+public:
+    SurfaceWalk(const Diagram& diagram, FacetSet& left, std::span<const u8> umbrellas, Context& context)
+        : tets_(diagram.tets),
+          cells_at_(diagram.cells_at),
+          left_(left),
+          umbrellas_(umbrellas),
+          context_(context),
+          taken_(tets_.cells.size()),
+          inner_(tets_.cells.size(), u8(0)),
+          settled_(tets_.cells.size(), std::uint16_t(0)) {}
+
+    /// Walks over every component of the candidates. What a walk does not reach is walked over by itself, if it has a
+    /// vertex with an umbrella.
+    void run() {
+        while (true) {
+            const std::vector<OrientedFacet> seeds = outermost_facets();
+            if (seeds.empty()) return remove_surplus();
+            for (const OrientedFacet& seed : seeds)
+                if (left_.contains(seed.side)) walk(seed);
+        }
+    }
+
+    FacetSet take_facets() { return std::move(taken_); }
+    Array<u8> take_inner() { return std::move(inner_); }
+
+private:
+    /// For each connected component of the candidates, a facet that is seen from beyond its lowest vertex.
+    std::vector<OrientedFacet> outermost_facets() {
+        DisjointSets sets(tets_.positions.size());
+        std::vector<bool> is_used(tets_.positions.size()), has_umbrella(tets_.positions.size());
+        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+            for (unsigned bits = left_.of(cell); bits != 0; bits &= bits - 1) {
+                const Triangle corners = corners_of(tets_, {cell, std::countr_zero(bits)});
+                sets.unite(corners[0], corners[1]);
+                sets.unite(corners[0], corners[2]);
+                for (const u32 vertex : corners) is_used[vertex] = true;
+            }
+        std::vector<u32> lowest(tets_.positions.size(), TetMesh::outside_hull);
+        for (u32 vertex = 0; vertex < lowest.size(); ++vertex) {
+            if (!is_used[vertex]) continue;
+            const u32 root = sets.find(vertex);
+            if (umbrellas_[vertex] == 1) has_umbrella[root] = true;
+            u32& its = lowest[root];
+            if (its == TetMesh::outside_hull || is_lower(tets_.positions[vertex], tets_.positions[its])) its = vertex;
+        }
+        std::vector<OrientedFacet> seeds;
+        for (u32 root = 0; root < lowest.size(); ++root)
+            if (lowest[root] != TetMesh::outside_hull && has_umbrella[root])
+                seeds.push_back(seen_from_below(lowest[root]));
+        return seeds;
+    }
+
+    /// A candidate at the vertex with its outer side towards lower x. Pre: no candidate of its component is lower.
+    OrientedFacet seen_from_below(u32 vertex) const {
+        std::vector<u32> cells(cells_at_[vertex].begin(), cells_at_[vertex].end());
+        std::ranges::sort(cells);
+        // The search goes from the cell that contains the direction to lower x, or from outside the hull.
+        std::vector<u32> queue;
+        for (const u32 cell : cells)
+            if (contains_downwards(cell, vertex)) {
+                queue.push_back(cell);
+                break;
+            }
+        const bool from_hull = queue.empty();
+        std::vector<bool> seen(cells.size());
+        const auto visit = [&](u32 cell) {
+            const auto i = static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin());
+            if (!seen[i]) {
+                seen[i] = true;
+                queue.push_back(cell);
+            }
+        };
+        if (from_hull) {
+            for (const u32 cell : cells)
+                for (int i = 0; i < 4; ++i)
+                    if (tets_.neighbours[cell][static_cast<std::size_t>(i)] == TetMesh::outside_hull &&
+                        tets_.cells[cell][static_cast<std::size_t>(i)] != vertex) {
+                        if (left_.contains(cell, i)) return {{cell, i}, true};
+                        visit(cell);
+                    }
+        } else {
+            seen[static_cast<std::size_t>(std::ranges::lower_bound(cells, queue[0]) - cells.begin())] = true;
+        }
+        for (std::size_t k = 0; k < queue.size(); ++k)
+            for (int i = 0; i < 4; ++i) {
+                const u32 cell = queue[k];
+                if (tets_.cells[cell][static_cast<std::size_t>(i)] == vertex) continue;
+                if (left_.contains(cell, i)) return {{cell, i}, false};
+                if (const u32 next = tets_.neighbours[cell][static_cast<std::size_t>(i)]; next != TetMesh::outside_hull)
+                    visit(next);
+            }
+        // Only beyond the hull: any candidate at the vertex.
+        for (const u32 cell : cells)
+            for (int i = 0; i < 4; ++i)
+                if (left_.contains(cell, i) && tets_.cells[cell][static_cast<std::size_t>(i)] != vertex)
+                    return {{cell, i}, false};
+        return {{cells[0], 0}, false};
+    }
+
+    /// Whether the cell's corner at the vertex contains the direction to lower x.
+    bool contains_downwards(u32 cell, u32 vertex) const {
+        const Vec3 down = -Vec3::UnitX();
+        for (int i = 0; i < 4; ++i) {
+            if (tets_.cells[cell][static_cast<std::size_t>(i)] == vertex) continue;
+            if (area_vector(tets_.positions, corners_of(tets_, {cell, i})).dot(down) > 0) return false;
+        }
+        return true;
+    }
+
+    Side owner_of(const Side& side) const {
+        return owns_facet(tets_, side.cell, side.corner) ? side : other_side(tets_, side);
+    }
+    bool is_settled(const Side& side, u32 third) const {
+        const Side owner = owner_of(side);
+        return (settled_[owner.cell] >> (4 * owner.corner + corner_of(tets_, owner.cell, third)) & 1) != 0;
+    }
+    void settle(const Side& side, u32 third) {
+        const Side owner = owner_of(side);
+        settled_[owner.cell] = static_cast<std::uint16_t>(settled_[owner.cell] |
+                                                1u << (4 * owner.corner + corner_of(tets_, owner.cell, third)));
+    }
+    /// Whether the taken facet has its outer side where `facet` has it.
+    bool has_orientation(const OrientedFacet& facet) const {
+        if ((inner_[facet.side.cell] >> facet.side.corner & 1) != 0) return facet.inner;
+        return !facet.inner;
+    }
+    void take(const OrientedFacet& facet) {
+        left_.remove(tets_, facet.side);
+        taken_.add(tets_, facet.side);
+        const Side inner = facet.inner ? facet.side : other_side(tets_, facet.side);
+        if (inner.is_cell()) inner_[inner.cell] = static_cast<u8>(inner_[inner.cell] | 1 << inner.corner);
+        queue_.push_back(facet);
+    }
+    u32 third_at(const Side& side, u32 a, u32 b) const {
+        for (const u32 vertex : corners_of(tets_, side))
+            if (vertex != a && vertex != b) return vertex;
+        return a;
+    }
+
+    void walk(const OrientedFacet& seed) {
+        queue_.clear();
+        take(seed);
+        for (std::size_t i = 0; i < queue_.size(); ++i) {
+            if ((i & 0xffff) == 0) context_.check_cancelled();
+            const OrientedFacet facet = queue_[i];
+            const Triangle corners = corners_of(tets_, facet.side);
+            for (std::size_t k = 0; k < 3; ++k) cross(facet, corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        }
+    }
+
+    /// Continues the surface across the edge from `a` to `b`.
+    void cross(const OrientedFacet& facet, u32 third, u32 a, u32 b) {
+        if (is_settled(facet.side, third)) return;
+        std::vector<Side>& others = others_;
+        others.clear();
+        std::size_t taken = 0;
+        for_each_facet_at(tets_, facet.side, third, [&](const Side& side) {
+            if (left_.contains(side)) others.push_back(side);
+            taken += taken_.contains(side);
+        });
+        if (taken > 1 || (others.size() + taken > 1 && umbrellas_[a] == 0 && umbrellas_[b] == 0)) return;
+        const std::optional<OrientedFacet> next =
+            taken > 0 ? continuation(tets_, taken_, facet, third) : continuation(tets_, left_, facet, third);
+        if (!next) return;
+        const u32 its_third = third_at(next->side, a, b);
+        if (taken > 0) {
+            if (is_settled(next->side, its_third) || !has_orientation(*next)) return;
+        } else {
+            take(*next);
+        }
+        settle(facet.side, third);
+        settle(next->side, its_third);
+        for (const Side& side : others)
+            if (left_.contains(side)) left_.remove(tets_, side);
+    }
+
+    /// Removes taken facets at edges with more than two of them, where the others continue each other, and those at
+    /// edges with two that do not.
+    void remove_surplus() {
+        std::vector<Side> surplus;
+        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+            for (unsigned bits = taken_.of(cell); bits != 0; bits &= bits - 1) {
+                const Side side{cell, std::countr_zero(bits)};
+                if (!owns_facet(tets_, cell, side.corner)) continue;
+                for (const u32 third : corners_of(tets_, side)) {
+                    if (is_settled(side, third)) continue;
+                    std::size_t others = 0;
+                    for_each_facet_at(tets_, side, third, [&](const Side& facet) { others += taken_.contains(facet); });
+                    const bool is_inner = (inner_[side.cell] >> side.corner & 1) != 0;
+                    const auto next = continuation(tets_, taken_, {side, is_inner}, third);
+                    if (others > 1 || (next && !has_orientation(*next))) {
+                        surplus.push_back(side);
+                        break;
+                    }
+                }
+            }
+        for (const Side& side : surplus) {
+            taken_.remove(tets_, side);
+            for (const Side& its : {side, other_side(tets_, side)})
+                if (its.is_cell()) inner_[its.cell] = static_cast<u8>(inner_[its.cell] & ~(1 << its.corner));
+        }
+    }
+
+    const TetMesh& tets_;
+    const VertexCells& cells_at_;
+    FacetSet& left_;
+    std::span<const u8> umbrellas_;
+    Context& context_;
+    FacetSet taken_;
+    Array<u8> inner_;
+    /// By owner cell, bit 4 i + j: the edge of the facet opposite to corner i that is opposite to corner j has two
+    /// facets that continue each other.
+    Array<std::uint16_t> settled_;
+    std::vector<OrientedFacet> queue_;
+    std::vector<Side> others_;
+};
+
+void require_range(std::string_view name, const Angle& angle, double least, double most) {
+    if (!(angle.in_degrees() >= least && angle.in_degrees() <= most))
+        throw Error("{} must be an angle from {} to {} degrees; it is {}", name, least, most, angle.text());
+}
+
+}  // namespace
+
+Array<Triangle> triangles_of(const TetMesh& tets, const Surface& surface) {
+    Array<Triangle> triangles;
+    for (u32 cell = 0; cell < tets.cells.size(); ++cell)
+        for (unsigned bits = surface.facets.of(cell); bits != 0; bits &= bits - 1) {
+            const Side side{cell, std::countr_zero(bits)};
+            if (!owns_facet(tets, cell, side.corner)) continue;
+            Triangle corners = corners_of(tets, side);
+            if ((surface.inner[cell] >> side.corner & 1) == 0) std::swap(corners[1], corners[2]);
+            triangles.push_back(corners);
+        }
+    return triangles;
+}
+
+Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context) {
+    const TetMesh& tets = diagram.tets;
+    FacetSet chosen = candidates(diagram, sampling, params.lid_factor, context);
+    Surface surface{FacetSet(0), {}, 0};
+    for (u32 cell = 0; cell < tets.cells.size(); ++cell)
+        for (unsigned bits = chosen.of(cell); bits != 0; bits &= bits - 1)
+            surface.candidates += owns_facet(tets, cell, std::countr_zero(bits));
+    const Array<u8> umbrellas = prune(diagram, chosen, params.prune_angle.in_radians(), context);
+    SurfaceWalk walk(diagram, chosen, umbrellas, context);
+    walk.run();
+    surface.facets = walk.take_facets();
+    surface.inner = walk.take_inner();
+    return surface;
+}
+
+void require_usable(const TetMesh& tets, const CoconeParams& params) {
+    if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
+    if (tets.neighbours.size() != tets.cells.size())
+        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size())
+            .hint("'delaunay' computes the neighbours");
+    if (!tets.weights.empty())
+        throw Error("needs cells made without weights; these {} points have weights", tets.weights.size())
+            .hint("use 'delaunay' without `weights`");
+    require_range("cone-angle", params.cone_angle, 5, 40);
+    require_range("prune-angle", params.prune_angle, 90, 170);
+    require_range("normal-angle", params.normal_angle, 10, 90);
+    require_range("gap-angle", params.gap_angle, 60, 360);
+    if (!(params.ratio >= 1)) throw Error("ratio must be at least 1; it is {}", params.ratio);
+    if (!(params.lid_factor > 0)) throw Error("lid-factor must be above 0; it is {}", params.lid_factor);
+}
+
+void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface, const std::string& reason) {
+    throw Error("found no surface: of {} points, {} are flat, and {} triangles are candidates{}",
+                tets.positions.size(), sampling.pole_flat, surface.candidates, reason)
+        .hint("the points are too noisy or too sparse for their shape; thin them first ('voxel-thin'), use "
+              "'tight-cocone: {noise: big-balls}', or take 'alpha-solid'");
+}
+
+ColumnTable with_sampling(const TetMesh& tets, const Diagram& diagram, const Sampling& sampling,
+                          std::span<const Vec3> outward, Context& context) {
+    constexpr std::array<std::string_view, 3> names{"pole-normal", "flat", "boundary"};
+    ColumnTable result;
+    for (const Column& column : tets.vertex_columns) {
+        if (std::ranges::find(names, column.name()) == names.end()) {
+            result.add(column);
+            continue;
+        }
+        std::string name = column.name();
+        while (tets.vertex_columns.find(name)) name += "-of-points";
+        context.warn(fmt::format("the points already have a column '{}'; it was renamed '{}'", column.name(), name));
+        result.add(column.renamed(name));
+    }
+    const std::size_t count = tets.positions.size();
+    Array<double> normals(3 * count);
+    for (std::size_t vertex = 0; vertex < count; ++vertex) {
+        const Vec3& pole = diagram.poles.directions[vertex];
+        const double sign = outward[vertex].dot(pole) < 0 ? -1 : 1;
+        for (int k = 0; k < 3; ++k) normals[3 * vertex + static_cast<std::size_t>(k)] = sign * pole[k];
+    }
+    result.add(Column("pole-normal", 3, Buffer<double>(std::move(normals))));
+    result.add(Column("flat", 1, Buffer<u8>(Array<u8>(sampling.flat))));
+    result.add(Column("boundary", 1, Buffer<u8>(Array<u8>(sampling.boundary))));
+    return result;
+}
+
+Array<Vec3> outward_directions(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+    Array<Vec3> sums(positions.size(), Vec3::Zero());
+    for (const Triangle& triangle : triangles) {
+        const Vec3 vector = area_vector(positions, triangle);
+        for (const u32 vertex : triangle) sums[vertex] += vector;
+    }
+    return sums;
+}
+
+}  // namespace scanmill::cocones

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The surface that cocone takes from its candidates, as facets of the tetrahedralisation.
+
+#include "cocone/facets.hpp"
+#include "cocone/sampling.hpp"
+
+namespace scanmill::cocones {
+
+struct Surface {
+    /// The facets of the surface. At every edge there are one or two.
+    FacetSet facets;
+    /// By cell, bit i: whether the facet opposite to corner i is in the surface and the cell is on its inner side.
+    Array<u8> inner;
+    std::size_t candidates = 0;  ///< number of facets before pruning
+};
+
+/// The facets as triangles, counter-clockwise seen from their outer side; ordered by owner cell, then by corner.
+Array<Triangle> triangles_of(const TetMesh& tets, const Surface& surface);
+
+/// Steps 2 to 4 of cocone.hpp. Each connected component is oriented so that it faces away from its lowest point (by x,
+/// y, z), and the orientations of its facets agree across edges. Cost: linear.
+Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context);
+
+/// Throws Error for a tetrahedralisation that cannot be used, and for parameters out of range.
+void require_usable(const TetMesh& tets, const CoconeParams& params);
+
+/// The error when nothing is left: `filter` made no surface.
+[[noreturn]] void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface,
+                               const std::string& reason);
+
+/// The vertex columns `pole-normal`, `flat` and `boundary` after those of the points; older columns of these names are
+/// renamed, with a warning. Pole normals get the direction of `outward` where that is not zero.
+ColumnTable with_sampling(const TetMesh& tets, const Diagram& diagram, const Sampling& sampling,
+                          std::span<const Vec3> outward, Context& context);
+
+/// Sums of the area vectors of the triangles at each vertex.
+Array<Vec3> outward_directions(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+
+}  // namespace scanmill::cocones

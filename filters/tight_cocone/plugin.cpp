@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "cocone/parameters.hpp"
+#include "tight_cocone/tight_cocone.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = TightCoconeParams;
+    auto declaration = Declare<P>("tight-cocone", 1);
+    declaration.summary("Makes a closed surface through the points, with every hole filled.")
+        .source("Dey, Goswami 2003 and 2004; Woo, Dey 2005, section 2")
+        .ties(
+            "A direction exactly on a limit of a cocone is inside. A cell whose good points disagree is inside. Of "
+            "equally small facets of a cell, the one opposite to its first corner counts.")
+        .adds({"pole-normal", "flat", "boundary"})
+        .in<TetMesh>("tets", "A Delaunay tetrahedralisation without weights.")
+        .made_by("delaunay")
+        .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
+        .out<TetMesh>("tets", "The cells, labelled inside or outside.");
+    cocones::declare_parameters(declaration);
+    return declaration
+        .choice("noise", &P::noise,
+                {{"none", P::Noise::none, "All points may be on the surface."},
+                 {"big-balls", P::Noise::big_balls,
+                  "Only the points on the outer side of a noisy sample, at large empty balls, are used. The result is "
+                  "smoother, and lies outside of the surface by about half a standard deviation of the noise."}},
+                "Treatment of noise.")
+        .param("noise-neighbours", &P::noise_neighbours,
+               "With big-balls: a ball is compared with the distance to the nearest neighbour of this number; the point itself is not counted.", at_least(1))
+        .param("noise-factor", &P::noise_factor,
+               "With big-balls: a ball is large if its radius is more than this times that distance.", above(0))
+        .metric("good", Unit::count, "Points where cocone's surface is one closed fan.", larger_is_better)
+        .metric("poor", Unit::count, "All other points.", smaller_is_better)
+        .metric("boundary-points", Unit::count, "Points where the sampling ends or is too sparse.")
+        .metric("unused-points", Unit::count, "Points that are not on the surface.", headline, smaller_is_better)
+        .metric("triangles", Unit::count, "Triangles of the surface.", headline)
+        .metric("holes-filled", Unit::count, "Boundary loops of cocone's surface that are filled.")
+        .metric("invented-area", Unit::area, "Area of the triangles that are not in cocone's surface.", headline,
+                smaller_is_better)
+        .metric("removed-blobs", Unit::count, "Closed components of cocone's surface that lie inside the solid.")
+        .metric("mended-vertices", Unit::count,
+                "Vertices where the boundary was not a manifold before cells were added.", smaller_is_better)
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            TightCoconeResult result = tight_cocone(inputs.get<TetMesh>("tets"), params, context);
+            return Outputs().set("mesh", std::move(result.mesh)).set("tets", std::move(result.tets));
+        });
+}
