@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/geometry/tets/circumspheres.hpp"
 #include "alpha_solid/descending_queue.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/tets/circumspheres.hpp"
 
 namespace scanmill::alpha {
 

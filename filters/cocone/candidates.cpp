@@ -37,7 +37,8 @@ bool has_closed_fan(std::vector<FanFacet>& facets, double least_cosine) {
         return std::ranges::any_of(facets, [&](const FanFacet& other) {
             if (!other.alive || &other == &facet) return false;
             for (std::size_t k = 0; k < 2; ++k)
-                if (other.ends[k] == facet.ends[end] && -other.away[k].dot(facet.away[end]) >= least_cosine) return true;
+                if (other.ends[k] == facet.ends[end] && -other.away[k].dot(facet.away[end]) >= least_cosine)
+                    return true;
             return false;
         });
     };
@@ -75,17 +76,18 @@ void collect(const Diagram& diagram, const FacetSet& set, u32 vertex, std::vecto
 
 }  // namespace
 
+bool spans_opening(const TetMesh& tets, const Sampling& sampling, double lid_factor, const Triangle& corners) {
+    double spacing = 0, longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (sampling.boundary[corners[k]] == 0) return false;
+        spacing = std::max(spacing, sampling.spacing[corners[k]]);
+        longest = std::max(longest, (tets.positions[corners[k]] - tets.positions[corners[(k + 1) % 3]]).norm());
+    }
+    return longest > lid_factor * spacing;
+}
+
 FacetSet candidates(const Diagram& diagram, const Sampling& sampling, double lid_factor, Context& context) {
     const TetMesh& tets = diagram.tets;
-    const auto spans_opening = [&](const Triangle& corners) {
-        double spacing = 0, longest = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (sampling.boundary[corners[k]] == 0) return false;
-            spacing = std::max(spacing, sampling.spacing[corners[k]]);
-            longest = std::max(longest, (tets.positions[corners[k]] - tets.positions[corners[(k + 1) % 3]]).norm());
-        }
-        return longest > lid_factor * spacing;
-    };
     Array<u8> bits(tets.cells.size());
     for_each_chunk(context.threads(), bits.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
@@ -104,7 +106,9 @@ FacetSet candidates(const Diagram& diagram, const Sampling& sampling, double lid
                     flat_agree &= agrees || !is_flat;
                     all_agree &= agrees;
                 }
-                if ((any_flat ? flat_agree : all_agree) && !spans_opening(corners_of(tets, {cell, i}))) chosen |= 1u << i;
+                if ((any_flat ? flat_agree : all_agree) &&
+                    !spans_opening(tets, sampling, lid_factor, corners_of(tets, {cell, i})))
+                    chosen |= 1u << i;
             }
             bits[cell] = static_cast<u8>(chosen);
         }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "cocone/surface.hpp"
+#include "cocone/pinholes.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
@@ -18,15 +18,14 @@ CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& co
     context.progress(0.3);
     const Sampling samples = sampling(diagram, params, context);
     context.progress(0.5);
-    const Surface surface = surface_of(diagram, samples, params, context);
-    Array<Triangle> triangles = triangles_of(tets, surface);
-    if (triangles.empty()) refuse_empty(tets, samples, surface, "");
-    context.progress(0.8);
+    Surface surface = surface_of(diagram, samples, params, context);
+    context.progress(0.7);
+    close_by_solid(diagram, samples, params, surface, context);
 
     CoconeResult result;
-    result.mesh.frame = tets.frame;
-    result.mesh.positions = tets.positions;
-    result.mesh.triangles = std::move(triangles);
+    result.mesh = SurfaceMesh(tets, surface).mesh;
+    if (result.mesh.triangles.empty()) refuse_empty(tets, samples, surface, "");
+    context.progress(0.9);
     face_outwards(result.mesh, context);
     const Array<Vec3> outward = outward_directions(tets.positions.span(), result.mesh.triangles.span());
     result.mesh.vertex_columns = with_sampling(tets, diagram, samples, outward, context);

@@ -5,21 +5,27 @@
 ///
 /// Terms (pole, cocone, cocone neighbour) are those of geometry/tets/voronoi.hpp.
 ///
-/// 1. A point is *flat* if the surface is well sampled there. Its cocone must not reach farther than 1 / `ratio` of the
-///    distance to the nearer pole, and the pole directions of its cocone neighbours must differ from its own by at most
-///    `normal_angle`. A point that passes the first test only is flat, too, if it has a flat cocone neighbour whose
-///    direction agrees. All other points are boundary points. So are points whose 16 nearest neighbours, seen in the
-///    tangent plane, leave a gap wider than `gap_angle`: the test with poles alone finds a third of a gently curved
-///    rim.
-/// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, and it has one.
-///    Triangles between boundary points alone with an edge longer than `lid_factor` local spacings span an opening and
-///    are no candidates. The local spacing is the mean distance to the six nearest neighbours.
-/// 3. Candidates with a free edge, or an edge where all of them meet at less than 180° - `prune_angle`, are removed
-///    repeatedly, where both ends of the edge have a closed fan of candidates.
-/// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the others.
+/// 1. A point is *flat* if the surface is well sampled there. In its tangent plane, its Voronoi cell must not reach
+///    farther than 1 / `ratio` of the distance to the nearer pole, and the pole directions of its cocone neighbours
+///    must differ from its own by at most `normal_angle`. A point that passes the first test only is flat, too, if it
+///    has a flat cocone neighbour whose direction agrees. All other points are boundary points. So are points whose 16
+///    nearest neighbours, seen in the tangent plane, leave a gap wider than `gap_angle`: the test with poles alone
+///    finds a third of a gently curved rim.
+/// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, or of all corners
+/// if
+///    none is flat. Triangles between boundary points alone with an edge longer than `lid_factor` local spacings span
+///    an opening and are no candidates. The local spacing is the mean distance to the six nearest neighbours.
+/// 3. Where the candidates at a point contain a closed fan, those outside of it are removed.
+/// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the
+/// others.
+///    It crosses edges with one choice first.
+/// 5. The solid behind the surface (see peeling.hpp) decides its outer side. Gaps that are closed by facets of the
+/// solid
+///    of which none spans an opening are closed.
 ///
 /// Source: Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001 for the boundary points; Woo, Dey 2005, section 2. The test
-/// for gaps and the one for spanning triangles are our own.
+/// for gaps, the one for spanning triangles, the vote where no corner is flat, the order of the walk and step 5 are our
+/// own.
 
 #include <optional>
 
@@ -62,8 +68,8 @@ struct CoconeResult {
 
 /// Pre:  a tetrahedralisation made by delaunay() without weights; parameters in their ranges. Throws Error otherwise,
 ///       and if there is no triangle.
-/// Post: see CoconeResult. Closed components face outwards, and cavities inwards. An open component faces away from its
-///       own lowest point. The bytes do not depend on the number of threads.
+/// Post: see CoconeResult. Closed components face outwards, and cavities inwards. An open component faces away from the
+///       solid behind it. The bytes do not depend on the number of threads.
 /// Ties: a direction exactly on a limit of a cocone is inside.
 /// Cost: linear in the cells, and a search for 16 neighbours of each point; about 90 bytes per cell.
 /// Metrics: see plugin.cpp.

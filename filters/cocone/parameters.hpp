@@ -10,7 +10,7 @@ namespace scanmill::cocones {
 /// Pre: Params is CoconeParams or derives from it.
 template <class Params>
 void declare_parameters(Declare<Params>& declaration) {
-    const auto field = [](auto CoconeParams::* member) {
+    const auto field = [](auto CoconeParams::*member) {
         return static_cast<std::remove_reference_t<decltype(std::declval<Params&>().*member)> Params::*>(member);
     };
     declaration
@@ -24,7 +24,9 @@ void declare_parameters(Declare<Params>& declaration) {
                "A point is flat if the pole directions of its cocone neighbours differ from its own by at most this.",
                at_least(10), at_most(90))
         .param("ratio", field(&CoconeParams::ratio),
-               "A point is flat if the distance to its nearer pole is at least this times the reach of its cocone.",
+               "A point is flat if the distance to its nearer pole is at least this times the reach of its Voronoi "
+               "cell in "
+               "the tangent plane.",
                at_least(1))
         .param("gap-angle", field(&CoconeParams::gap_angle),
                "A point whose 16 nearest neighbours leave a wider gap in the tangent plane is a boundary point.",

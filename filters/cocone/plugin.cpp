@@ -9,10 +9,13 @@ SCANMILL_FILTER() {
     using P = CoconeParams;
     auto declaration = Declare<P>("cocone", 1);
     declaration
-        .summary("Takes the surface through the points from their tetrahedralisation, and leaves it open where the "
-                 "scan is.")
+        .summary(
+            "Takes the surface through the points from their tetrahedralisation, and leaves it open where the "
+            "scan is.")
         .source("Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001; Woo, Dey 2005, section 2")
-        .ties("A direction exactly on a limit of a cocone is inside. Of equally far poles, that of the lower cell counts.")
+        .ties(
+            "A direction exactly on a limit of a cocone is inside. Of equally far poles, that of the lower cell "
+            "counts.")
         .adds({"pole-normal", "flat", "boundary"})
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation without weights.")
         .made_by("delaunay")

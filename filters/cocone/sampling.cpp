@@ -30,7 +30,6 @@ public:
     Flatness(const Diagram& diagram, const CoconeParams& params, Context& context)
         : diagram_(diagram),
           tets_(diagram.tets),
-          sine_(elementary::turn_of(params.cone_angle.in_radians()).sine),
           least_cosine_(elementary::turn_of(params.normal_angle.in_radians()).cosine),
           ratio_(params.ratio),
           context_(context) {}
@@ -94,17 +93,17 @@ private:
         return all;
     }
 
-    /// Whether the cocone reaches at most 1 / ratio of the distance to the nearer pole.
+    /// Whether the cell reaches, in the tangent plane, at most 1 / ratio of the distance to the nearer pole.
     bool has_thin_cell(u32 v) const {
-        const Cocone cocone{tets_.positions[v], diagram_.poles.directions[v], sine_ * sine_};
+        const Cocone cocone{tets_.positions[v], diagram_.poles.directions[v], 0};
         const double most = diagram_.poles.heights[v] / ratio_;
         for (const u32 cell : diagram_.cells_at[v]) {
             const Tetrahedron& corners = tets_.cells[cell];
             const unsigned own = static_cast<unsigned>(std::ranges::find(corners, v) - corners.begin());
             for (unsigned i = 0; i < 4; ++i)
                 if ((diagram_.hits[cell] >> (4 * i + own) & 1u) != 0 &&
-                    !(cocone.squared_reach_in_plane(
-                          dual_edge(tets_, diagram_.centres, cell, static_cast<int>(i))) <= most * most))
+                    !(cocone.squared_reach(dual_edge(tets_, diagram_.centres, cell, static_cast<int>(i))) <=
+                      most * most))
                     return false;
         }
         return true;
@@ -112,7 +111,7 @@ private:
 
     const Diagram& diagram_;
     const TetMesh& tets_;
-    double sine_, least_cosine_, ratio_;
+    double least_cosine_, ratio_;
     Context& context_;
 };
 
@@ -162,7 +161,8 @@ Sampling sampling(const Diagram& diagram, const CoconeParams& params, Context& c
             const std::size_t few = std::min(spacing_neighbours, neighbours.size());
             for (std::size_t k = 0; k < few; ++k) sum += std::sqrt(neighbours[k].squared);
             result.spacing[row] = few > 0 ? sum / static_cast<double>(few) : 0;
-            for (std::size_t k = 0; k < neighbours.size(); ++k) near[k] = tree.positions()[neighbours[k].index] - positions[row];
+            for (std::size_t k = 0; k < neighbours.size(); ++k)
+                near[k] = tree.positions()[neighbours[k].index] - positions[row];
             const double gap = widest_gap(std::span(near).first(neighbours.size()));
             result.boundary[row] = result.flat[row] == 0 || gap > least_gap;
         }

@@ -6,11 +6,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <deque>
 
 #include "cocone/candidates.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::cocones {
@@ -137,8 +139,8 @@ private:
     }
     void settle(const Side& side, u32 third) {
         const Side owner = owner_of(side);
-        settled_[owner.cell] = static_cast<std::uint16_t>(settled_[owner.cell] |
-                                                1u << (4 * owner.corner + corner_of(tets_, owner.cell, third)));
+        settled_[owner.cell] = static_cast<std::uint16_t>(
+            settled_[owner.cell] | 1u << (4 * owner.corner + corner_of(tets_, owner.cell, third)));
     }
     /// Whether the taken facet has its outer side where `facet` has it.
     bool has_orientation(const OrientedFacet& facet) const {
@@ -150,7 +152,12 @@ private:
         taken_.add(tets_, facet.side);
         const Side inner = facet.inner ? facet.side : other_side(tets_, facet.side);
         if (inner.is_cell()) inner_[inner.cell] = static_cast<u8>(inner_[inner.cell] | 1 << inner.corner);
-        queue_.push_back(facet);
+        for (const u32 third : corners_of(tets_, facet.side)) queues_[0].push_back({facet, third});
+    }
+    std::array<u32, 2> edge_of(const Side& side, u32 third) const {
+        Triangle corners = corners_of(tets_, side);
+        std::ranges::rotate(corners, std::ranges::find(corners, third));
+        return {corners[1], corners[2]};
     }
     u32 third_at(const Side& side, u32 a, u32 b) const {
         for (const u32 vertex : corners_of(tets_, side))
@@ -158,20 +165,24 @@ private:
         return a;
     }
 
+    /// Walks over a component, across certain edges first. So if fronts of different orientation meet, they meet where
+    /// the surface is uncertain.
     void walk(const OrientedFacet& seed) {
-        queue_.clear();
         take(seed);
-        for (std::size_t i = 0; i < queue_.size(); ++i) {
-            if ((i & 0xffff) == 0) context_.check_cancelled();
-            const OrientedFacet facet = queue_[i];
-            const Triangle corners = corners_of(tets_, facet.side);
-            for (std::size_t k = 0; k < 3; ++k) cross(facet, corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        for (std::size_t steps = 0; true; ++steps) {
+            if ((steps & 0xffff) == 0) context_.check_cancelled();
+            const auto queue = std::ranges::find_if(queues_, [](const auto& its) { return !its.empty(); });
+            if (queue == queues_.end()) return;
+            const OpenEdge edge = queue->front();
+            queue->pop_front();
+            cross(edge.facet, edge.third, static_cast<std::size_t>(queue - queues_.begin()));
         }
     }
 
-    /// Continues the surface across the edge from `a` to `b`.
-    void cross(const OrientedFacet& facet, u32 third, u32 a, u32 b) {
-        if (is_settled(facet.side, third)) return;
+    /// Continues the surface across an edge, unless the edge is less certain than `most` allows; then the edge waits.
+    void cross(const OrientedFacet& facet, u32 third, std::size_t most) {
+        if (is_settled(facet.side, third) || !taken_.contains(facet.side)) return;
+        const auto [a, b] = edge_of(facet.side, third);
         std::vector<Side>& others = others_;
         others.clear();
         std::size_t taken = 0;
@@ -179,7 +190,14 @@ private:
             if (left_.contains(side)) others.push_back(side);
             taken += taken_.contains(side);
         });
-        if (taken > 1 || (others.size() + taken > 1 && umbrellas_[a] == 0 && umbrellas_[b] == 0)) return;
+        const bool is_ambiguous = others.size() + taken > 1;
+        const std::size_t ends = std::size_t(umbrellas_[a]) + umbrellas_[b];
+        if (taken > 1 || (is_ambiguous && ends == 0)) return;
+        const std::size_t uncertainty = is_ambiguous ? 2 : ends == 2 ? 0 : 1;
+        if (uncertainty > most) {
+            queues_[uncertainty].push_back({facet, third});
+            return;
+        }
         const std::optional<OrientedFacet> next =
             taken > 0 ? continuation(tets_, taken_, facet, third) : continuation(tets_, left_, facet, third);
         if (!next) return;
@@ -232,7 +250,14 @@ private:
     /// By owner cell, bit 4 i + j: the edge of the facet opposite to corner i that is opposite to corner j has two
     /// facets that continue each other.
     Array<std::uint16_t> settled_;
-    std::vector<OrientedFacet> queue_;
+    struct OpenEdge {
+        OrientedFacet facet;
+        u32 third;
+    };
+    /// Edges of taken facets that the walk has not crossed yet. First those with exactly two candidates and an umbrella
+    /// at both ends, then those without such umbrellas, then those with more candidates. New edges enter the first
+    /// queue.
+    std::array<std::deque<OpenEdge>, 3> queues_;
     std::vector<Side> others_;
 };
 
@@ -243,7 +268,7 @@ void require_range(std::string_view name, const Angle& angle, double least, doub
 
 }  // namespace
 
-Array<Triangle> triangles_of(const TetMesh& tets, const Surface& surface) {
+SurfaceMesh::SurfaceMesh(const TetMesh& tets, const Surface& surface) {
     Array<Triangle> triangles;
     for (u32 cell = 0; cell < tets.cells.size(); ++cell)
         for (unsigned bits = surface.facets.of(cell); bits != 0; bits &= bits - 1) {
@@ -253,7 +278,10 @@ Array<Triangle> triangles_of(const TetMesh& tets, const Surface& surface) {
             if ((surface.inner[cell] >> side.corner & 1) == 0) std::swap(corners[1], corners[2]);
             triangles.push_back(corners);
         }
-    return triangles;
+    mesh.frame = tets.frame;
+    mesh.positions = tets.positions;
+    mesh.triangles = std::move(triangles);
+    opposite = half_edges::opposites(mesh);
 }
 
 Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context) {
@@ -288,10 +316,11 @@ void require_usable(const TetMesh& tets, const CoconeParams& params) {
 }
 
 void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface, const std::string& reason) {
-    throw Error("found no surface: of {} points, {} are flat, and {} triangles are candidates{}",
-                tets.positions.size(), sampling.pole_flat, surface.candidates, reason)
-        .hint("the points are too noisy or too sparse for their shape; thin them first ('voxel-thin'), use "
-              "'tight-cocone: {noise: big-balls}', or take 'alpha-solid'");
+    throw Error("found no surface: of {} points, {} are flat, and {} triangles are candidates{}", tets.positions.size(),
+                sampling.pole_flat, surface.candidates, reason)
+        .hint(
+            "the points are too noisy or too sparse for their shape; thin them first ('voxel-thin'), use "
+            "'tight-cocone: {noise: big-balls}', or take 'alpha-solid'");
 }
 
 ColumnTable with_sampling(const TetMesh& tets, const Diagram& diagram, const Sampling& sampling,

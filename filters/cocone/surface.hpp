@@ -16,10 +16,15 @@ struct Surface {
 };
 
 /// The facets as triangles, counter-clockwise seen from their outer side; ordered by owner cell, then by corner.
-Array<Triangle> triangles_of(const TetMesh& tets, const Surface& surface);
+struct SurfaceMesh {
+    SurfaceMesh(const TetMesh& tets, const Surface& surface);
 
-/// Steps 2 to 4 of cocone.hpp. Each connected component is oriented so that it faces away from its lowest point (by x,
-/// y, z), and the orientations of its facets agree across edges. Cost: linear.
+    TriangleMesh mesh;  ///< with all vertices of the tetrahedralisation
+    Array<u32> opposite;  ///< half_edges::opposites(mesh)
+};
+
+/// Steps 2 to 4 of cocone.hpp. Each connected component is oriented so that its lowest point (by x, y, z) is seen from
+/// outside, and the orientations of its facets agree across edges. Cost: linear.
 Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context);
 
 /// Throws Error for a tetrahedralisation that cannot be used, and for parameters out of range.

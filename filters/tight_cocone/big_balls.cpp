@@ -91,8 +91,8 @@ TetMesh tets_of(const TetMesh& tets, std::span<const u32> vertices, Context& con
     result.positions = gather(tets.positions, vertices);
     result.vertex_columns = tets.vertex_columns.gather(vertices);
     RawTriangulation raw = triangulate(result.positions.span(), context);
-    CanonicalCells canonical = canonical_cells(std::move(raw.cells), std::move(raw.neighbours),
-                                               result.positions.size(), context.threads());
+    CanonicalCells canonical =
+        canonical_cells(std::move(raw.cells), std::move(raw.neighbours), result.positions.size(), context.threads());
     result.cells = std::move(canonical.cells);
     result.neighbours = std::move(canonical.neighbours);
     return result;

@@ -27,7 +27,9 @@ SCANMILL_FILTER() {
                   "smoother, and lies outside of the surface by about half a standard deviation of the noise."}},
                 "Treatment of noise.")
         .param("noise-neighbours", &P::noise_neighbours,
-               "With big-balls: a ball is compared with the distance to the nearest neighbour of this number; the point itself is not counted.", at_least(1))
+               "With big-balls: a ball is compared with the distance to the nearest neighbour of this number; the "
+               "point itself is not counted.",
+               at_least(1))
         .param("noise-factor", &P::noise_factor,
                "With big-balls: a ball is large if its radius is more than this times that distance.", above(0))
         .metric("good", Unit::count, "Points where cocone's surface is one closed fan.", larger_is_better)

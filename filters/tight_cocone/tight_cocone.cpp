@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "cocone/surface.hpp"
+#include "cocone/pinholes.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
@@ -16,7 +16,6 @@
 #include "scanmill/geometry/tets/incremental_solid.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "tight_cocone/big_balls.hpp"
-#include "tight_cocone/peeling.hpp"
 
 namespace scanmill {
 
@@ -51,13 +50,11 @@ std::size_t mend(const Diagram& diagram, Array<u8>& labels, Context& context) {
 }
 
 /// The loops of an open surface whose edges are all edges of the closed one.
-std::size_t spanned_loops(const TetMesh& tets, std::span<const Triangle> open, std::span<const Triangle> closed) {
-    TriangleMesh mesh;
-    mesh.positions = tets.positions;
-    mesh.triangles = Array<Triangle>(open.begin(), open.end());
-    const std::vector<Array<u32>> loops = boundary_loops(mesh, half_edges::opposites(mesh));
+std::size_t spanned_loops(const SurfaceMesh& open, std::span<const Triangle> closed) {
+    const TriangleMesh& mesh = open.mesh;
+    const std::vector<Array<u32>> loops = boundary_loops(mesh, open.opposite);
     if (loops.empty()) return 0;
-    std::vector<bool> is_on_loop(tets.positions.size());
+    std::vector<bool> is_on_loop(mesh.positions.size());
     const auto edge_of = [&](u32 h) { return make_edge(half_edges::start(mesh, h), half_edges::end(mesh, h)); };
     for (const Array<u32>& loop : loops)
         for (const u32 h : loop) is_on_loop[half_edges::start(mesh, h)] = true;
@@ -93,9 +90,9 @@ void warn_about(const TightCoconeResult& result, std::size_t points, const std::
                 Context& context) {
     const double share = result.invented_area / result.area;
     const std::string text = fmt::format(
-        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {} and sharp or sparse places",
-        100 * share, result.invented_area, result.area,
-        symbol(result.tets.frame.unit),
+        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {} and sharp or sparse "
+        "places",
+        100 * share, result.invented_area, result.area, symbol(result.tets.frame.unit),
         count_text(result.holes_filled, "hole", "holes"));
     if (share > doubtful_share)
         context.doubt(text + "; check the result before using it", "mesh");
@@ -137,17 +134,16 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     TightCoconeResult result;
     result.tets = given;
     if (params.noise == TightCoconeParams::Noise::big_balls)
-        result.tets = tets_of(given, outer_points(given, params.noise_neighbours, params.noise_factor, context), context);
+        result.tets =
+            tets_of(given, outer_points(given, params.noise_neighbours, params.noise_factor, context), context);
     const TetMesh& tets = result.tets;
     const Diagram diagram(tets, params.cone_angle.in_radians(), context);
     context.progress(0.3);
     const Sampling samples = sampling(diagram, params, context);
     context.progress(0.5);
-    const Surface surface = surface_of(diagram, samples, params, context);
-    const Array<Triangle> triangles = triangles_of(tets, surface);
+    Surface surface = surface_of(diagram, samples, params, context);
     context.progress(0.7);
-
-    Peeling peeling = peel(diagram, surface, triangles, samples.flat, context);
+    Peeling peeling = close_by_solid(diagram, samples, params, surface, context);
     result.good = peeling.good;
     result.poor = tets.positions.size() - peeling.good;
     result.boundary_points = samples.boundary_points;
@@ -159,7 +155,7 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     context.progress(0.85);
     result.mended_vertices = mend(diagram, peeling.labels, context);
     Array<Triangle> boundary = boundary_triangles(tets, peeling.labels, context.threads());
-    result.holes_filled = spanned_loops(tets, triangles, boundary);
+    result.holes_filled = spanned_loops(SurfaceMesh(tets, surface), boundary);
     const Array<Vec3> outward = outward_directions(tets.positions.span(), boundary);
     ColumnTable columns = with_sampling(tets, diagram, samples, outward, context);
     result.tets.inside = std::move(peeling.labels);
@@ -176,8 +172,8 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     result.mesh = boundary_mesh(tets, std::move(boundary));
     result.unused = given.positions.size() - result.mesh.positions.size();
 
-    warn_about(result, given.positions.size(), [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); },
-               context);
+    warn_about(
+        result, given.positions.size(), [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); }, context);
     report(result, context);
     context.progress(1);
     return result;

@@ -45,7 +45,8 @@ struct TightCoconeResult {
     std::size_t mended_vertices = 0;
 };
 
-/// Pre:  as for cocone(). Throws Error as cocone() does, if the outside spreads everywhere, and if the noise mode's walk
+/// Pre:  as for cocone(). Throws Error as cocone() does, if the outside spreads everywhere, and if the noise mode's
+/// walk
 ///       has entered the object.
 /// Post: see TightCoconeResult. The boundary is a closed 2-manifold, oriented outwards, through a subset of the points.
 ///       It has no cavities. The bytes do not depend on the number of threads.

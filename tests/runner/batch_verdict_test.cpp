@@ -73,8 +73,8 @@ TEST_F(BatchVerdict, Runs_ListTheRegressionsOfEveryGate) {
     EXPECT_EQ(runs[1]["regressions"], 2);
     EXPECT_TRUE(runs[2]["regressions"].is_null()) << "without a gate";
     EXPECT_THAT(scanmill({"runs", "out"}).out,
-                AllOf(HasSubstr("  failed  regressions  computed  "),
-                      ContainsRegex("\n  2  [^ ]+  b +4 +0 +0 +2 +"), ContainsRegex("\n  3  [^ ]+  b +4 +0 +0 +- +")));
+                AllOf(HasSubstr("  failed  regressions  computed  "), ContainsRegex("\n  2  [^ ]+  b +4 +0 +0 +2 +"),
+                      ContainsRegex("\n  3  [^ ]+  b +4 +0 +0 +- +")));
     accept();
     EXPECT_EQ(Json::parse(scanmill({"runs", "out", "--json"}).out)["runs"][1]["regressions"], 2)
         << "under the baseline of its time";

@@ -262,8 +262,8 @@ TEST_F(RunCommandUnits, Csv_HasTheDeclaredUnit) {
     const ProgramResult csv =
         scanmill_program({"report", "out", "--table", "csv"}, {.folder = folder_.path(), .cache = folder_ / "home"});
     EXPECT_THAT(csv.out, ContainsRegex(",alpha-solid,alpha,0.866025[0-9]*,mm\r\n"));
-    const ProgramResult report = scanmill_program({"report", "out", "--metric", "alpha"},
-                                                  {.folder = folder_.path(), .cache = folder_ / "home"});
+    const ProgramResult report =
+        scanmill_program({"report", "out", "--metric", "alpha"}, {.folder = folder_.path(), .cache = folder_ / "home"});
     EXPECT_THAT(report.out, HasSubstr("alpha (mm)"));
 }
 

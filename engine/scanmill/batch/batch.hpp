@@ -41,8 +41,8 @@ struct Limits {
 struct BatchInput {
     std::vector<std::filesystem::path> files;
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the files
-    std::string frame;                      ///< with {stem} replaced; empty: from the files
-    Position position;                      ///< position of the input's name
+    std::string frame;  ///< with {stem} replaced; empty: from the files
+    Position position;  ///< position of the input's name
 
     bool has_same_files(const BatchInput& other) const {
         return files == other.files && unit == other.unit && frame == other.frame;
@@ -53,14 +53,14 @@ struct BatchScan {
     std::filesystem::path file;
     Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;                   ///< with {stem} replaced; empty: from the workflow or the file
+    std::string frame;  ///< with {stem} replaced; empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
-    std::filesystem::path pose_file;     ///< empty: the pose is written in the batch
-    BatchInput truth;                          ///< without files: the scan has no truth
+    std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
+    BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
-    Position invalid_position;                     ///< position of the key `invalid`
-    Settings settings;                   ///< values of this scan, which override Batch::settings
+    Position invalid_position;  ///< position of the key `invalid`
+    Settings settings;  ///< values of this scan, which override Batch::settings
 };
 
 struct BatchWorkflow {

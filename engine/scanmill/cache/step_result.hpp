@@ -44,10 +44,14 @@ struct StepResult {
 };
 constexpr auto fields(const StepResult*) {
     using R = StepResult;
-    return std::tuple{field("outputs", &R::outputs),   field("resolved", &R::resolved),
-                      field("metrics", &R::metrics),   field("properties", &R::properties),
-                      field("warnings", &R::warnings), field("doubts", &R::doubts),
-                      field("seconds", &R::seconds),   field("filter", &R::filter).optional(),
+    return std::tuple{field("outputs", &R::outputs),
+                      field("resolved", &R::resolved),
+                      field("metrics", &R::metrics),
+                      field("properties", &R::properties),
+                      field("warnings", &R::warnings),
+                      field("doubts", &R::doubts),
+                      field("seconds", &R::seconds),
+                      field("filter", &R::filter).optional(),
                       field("workflow", &R::workflow).optional()};
 }
 

@@ -66,9 +66,7 @@ constexpr auto fields(const Decision*) {
 struct GateVerdict {
     std::size_t regressions = 0;
 };
-constexpr auto fields(const GateVerdict*) {
-    return std::tuple{field("regressions", &GateVerdict::regressions)};
-}
+constexpr auto fields(const GateVerdict*) { return std::tuple{field("regressions", &GateVerdict::regressions)}; }
 constexpr const char* verdict_table = "gate_verdict";
 
 const std::string& layout() {

@@ -43,9 +43,9 @@ struct JobCaching {
 };
 constexpr auto fields(const JobCaching*) {
     using R = JobCaching;
-    return std::tuple{field("is-used", &R::is_used), field("plan-key", &R::plan_key), field("code", &R::code),
-                      field("inputs-cost", &R::inputs_cost), field("needed", &R::needed),
-                      field("workflow", &R::workflow)};
+    return std::tuple{field("is-used", &R::is_used), field("plan-key", &R::plan_key),
+                      field("code", &R::code),       field("inputs-cost", &R::inputs_cost),
+                      field("needed", &R::needed),   field("workflow", &R::workflow)};
 }
 
 struct ReadWork {

@@ -150,10 +150,10 @@ void require_declared(const Outputs& outputs, const Metrics& metrics, const Filt
 void doubt_inside_out(const Outputs& outputs, const FilterSpec& spec, Context& context) {
     for (const PortSpec& port : spec.outputs)
         if (const TriangleMesh* mesh = outputs.find(port.name)->find<TriangleMesh>(); mesh && is_inside_out(*mesh))
-            context.doubt(fmt::format("the closed surface is inside out: it encloses a volume of {:.6g} {}³",
-                                      signed_volume(mesh->positions.span(), mesh->triangles.span()),
-                                      symbol(mesh->frame.unit)),
-                          port.name);
+            context.doubt(
+                fmt::format("the closed surface is inside out: it encloses a volume of {:.6g} {}³",
+                            signed_volume(mesh->positions.span(), mesh->triangles.span()), symbol(mesh->frame.unit)),
+                port.name);
 }
 
 /// Calls `check`. Puts the file's path before the sentence of an error, as readers do.

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "alpha_solid/components.hpp"
-#include "scanmill/geometry/tets/incremental_solid.hpp"
 #include "alpha_solid/widest_path_sweep.hpp"
 #include "filters/alpha_solid/cases.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/tets/incremental_solid.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "scanmill/geometry/tets/vertex_stars.hpp"
 #include "support/point_sets.hpp"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/geometry/tets/circumspheres.hpp"
 #include "alpha_solid/descending_queue.hpp"
 #include "scanmill/base/random.hpp"
+#include "scanmill/geometry/tets/circumspheres.hpp"
 
 namespace scanmill::alpha {
 namespace {

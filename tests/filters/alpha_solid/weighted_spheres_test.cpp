@@ -13,6 +13,7 @@
 namespace scanmill::alpha {
 namespace {
 
+using namespace spheres;
 using namespace test;
 
 double lowered(const Ball& ball, double largest) { return CGAL::to_double(Number(ball.squared + Number(largest))); }

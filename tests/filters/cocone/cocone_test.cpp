@@ -74,8 +74,7 @@ TEST(Cocone, CurvedPatch_HasOneLoopThroughItsRim) {
 }
 
 TEST(Cocone, PatchWithAHole_HasTwoLoops) {
-    const PointCloud cloud =
-        points_where(curved_patch(), [](const Vec3& p) { return std::hypot(p.x(), p.y()) > 3.4; });
+    const PointCloud cloud = points_where(curved_patch(), [](const Vec3& p) { return std::hypot(p.x(), p.y()) > 3.4; });
     const CoconeResult result = surface_through(cloud);
     EXPECT_EQ(topology_of(result).euler, 0);
     EXPECT_EQ(result.loops, 2u);

@@ -15,8 +15,6 @@ inline TightCoconeResult closed_through(const PointCloud& cloud, const TightCoco
     return tight_cocone(tets_of(cloud, threads), params, context);
 }
 
-inline double volume(const TriangleMesh& mesh) {
-    return signed_volume(mesh.positions.span(), mesh.triangles.span());
-}
+inline double volume(const TriangleMesh& mesh) { return signed_volume(mesh.positions.span(), mesh.triangles.span()); }
 
 }  // namespace scanmill::test

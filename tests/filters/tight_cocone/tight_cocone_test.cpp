@@ -41,8 +41,7 @@ TEST(TightCocone, Torus_HasItsVolumeAndOneHandle) {
 
 TEST(TightCocone, SphereWithoutACap_IsClosed) {
     const double limit = std::cos(20 * pi / 180);
-    const PointCloud cloud =
-        points_where(fibonacci_sphere(2000, 1e-6), [&](const Vec3& p) { return p.z() < limit; });
+    const PointCloud cloud = points_where(fibonacci_sphere(2000, 1e-6), [&](const Vec3& p) { return p.z() < limit; });
     const TightCoconeResult result = closed_through(cloud);
     const MeshTopology found = topology(result.mesh);
     EXPECT_TRUE(found.closed);

@@ -23,8 +23,8 @@
 
 #include <array>
 
-#include "scanmill/data/array.hpp"
 #include "scanmill/base/execution.hpp"
+#include "scanmill/data/array.hpp"
 #include "scanmill/data/tets.hpp"
 
 namespace scanmill {

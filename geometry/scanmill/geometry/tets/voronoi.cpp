@@ -18,8 +18,8 @@ constexpr std::size_t chunk = 1 << 13;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// f(t) = ((y - apex)·axis)² - sin² |y - apex|² for y = foot + t normal, as c + 2 b t + a t². The cocone is f ≤ 0. The
-/// offset from the apex to the foot is perpendicular to the normal, so f keeps its digits near the apex even if the ends
-/// of the edge are circumcentres of flat cells, far away.
+/// offset from the apex to the foot is perpendicular to the normal, so f keeps its digits near the apex even if the
+/// ends of the edge are circumcentres of flat cells, far away.
 struct ConeFunction {
     double a, b, c;
 
@@ -118,30 +118,13 @@ bool Cocone::meets(const VoronoiEdge& edge) const {
 }
 
 double Cocone::squared_reach(const VoronoiEdge& edge) const {
-    const ConeFunction f(*this, edge);
-    const double to_foot = (edge.foot - apex).squaredNorm();
-    double reach = -1;
-    const auto at = [&](double t) { reach = std::max(reach, to_foot + t * t); };
-    for (const double end : {edge.from, edge.to})
-        if (f.is_inside(end)) at(end);
-    // The distance is convex along the edge, so its largest value is at an end of a part inside the cocone.
-    const double discriminant = f.b * f.b - f.a * f.c;
-    if (discriminant >= 0) {
-        const double q = -(f.b + std::copysign(std::sqrt(discriminant), f.b));
-        if (f.a != 0 && q / f.a > edge.from && q / f.a < edge.to) at(q / f.a);
-        if (q != 0 && f.c / q > edge.from && f.c / q < edge.to) at(f.c / q);
-    }
-    return reach;
-}
-
-double Cocone::squared_reach_in_plane(const VoronoiEdge& edge) const {
     const Vec3 to_foot = edge.foot - apex;
     const double tilt = edge.normal.dot(axis), height = to_foot.dot(axis), t = -height / tilt;
     return tilt != 0 && t >= edge.from && t <= edge.to ? to_foot.squaredNorm() + t * t : -1;
 }
 
-Array<std::uint16_t> cocone_hits(const TetMesh& tets, std::span<const Vec3> centres, const Poles& poles, double cone_angle,
-                       Execution& execution) {
+Array<std::uint16_t> cocone_hits(const TetMesh& tets, std::span<const Vec3> centres, const Poles& poles,
+                                 double cone_angle, Execution& execution) {
     const std::size_t count = tets.cells.size();
     const double sine = elementary::turn_of(cone_angle).sine, squared_sine = sine * sine;
     Array<std::uint16_t> hits(count);

@@ -55,17 +55,16 @@ struct Cocone {
     /// Whether a point of the edge lies in the cocone. The whole edge counts: it can enter and leave the cocone between
     /// its ends. A point on a limit is inside. Pre: the apex is a corner of the dual facet.
     bool meets(const VoronoiEdge& edge) const;
-    /// The largest squared distance from the apex to a point of the edge in the cocone: infinite for a ray that stays
-    /// inside, -1 if the edge does not meet the cocone. Pre: as above.
+    /// The squared distance from the apex to the point where the edge crosses the tangent plane, which is perpendicular
+    /// to the axis; -1 if it does not. Pre: as above.
     double squared_reach(const VoronoiEdge& edge) const;
-    double squared_reach_in_plane(const VoronoiEdge& edge) const;
 };
 
 /// By cell: bit 4 i + j is set if the edge dual to the facet opposite to corner i meets the cocone of corner j. The
 /// facet's other two corners are then *cocone neighbours* of corner j: their Voronoi cells meet its cocone, because a
 /// face of a Voronoi cell meets the cocone exactly if one of the face's edges does. Cost: linear.
-Array<std::uint16_t> cocone_hits(const TetMesh& tets, std::span<const Vec3> centres, const Poles& poles, double cone_angle,
-                       Execution& execution);
+Array<std::uint16_t> cocone_hits(const TetMesh& tets, std::span<const Vec3> centres, const Poles& poles,
+                                 double cone_angle, Execution& execution);
 
 /// The corner of the cell across the facet opposite to `corner` that is not on this facet. Pre: there is such a cell.
 inline int corner_across(const TetMesh& tets, u32 cell, int corner) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tight_cocone/peeling.hpp"
+#include "cocone/peeling.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -19,11 +19,9 @@ constexpr std::size_t chunk = 1 << 12;
 constexpr double folded_cosine = -0.9;
 
 /// By vertex: whether it is good, see peel().
-Array<u8> good_points(const TetMesh& tets, std::span<const Triangle> triangles, std::span<const u8> flat) {
-    TriangleMesh mesh;
-    mesh.positions = tets.positions;
-    mesh.triangles = Array<Triangle>(triangles.begin(), triangles.end());
-    const Array<u32> opposite = half_edges::opposites(mesh);
+Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span<const u8> flat) {
+    const TriangleMesh& mesh = surface.mesh;
+    const std::span<const u32> opposite = surface.opposite;
     const std::size_t count = tets.positions.size();
     Array<u32> triangles_at(count, 0u), first(count, half_edges::boundary);
     for (u32 h = 0; h < opposite.size(); ++h) {
@@ -46,8 +44,8 @@ Array<u8> good_points(const TetMesh& tets, std::span<const Triangle> triangles, 
     }
     for (u32 h = 0; h < opposite.size(); ++h) {
         if (opposite[h] == half_edges::boundary || opposite[h] < h) continue;
-        const Vec3 a = area_vector(tets.positions.span(), triangles[h / 3]),
-                   b = area_vector(tets.positions.span(), triangles[opposite[h] / 3]);
+        const Vec3 a = area_vector(tets.positions.span(), mesh.triangles[h / 3]),
+                   b = area_vector(tets.positions.span(), mesh.triangles[opposite[h] / 3]);
         const double cosine = a.dot(b), size = a.norm() * b.norm();
         for (const u32 vertex : {half_edges::start(mesh, h), half_edges::end(mesh, h)})
             if (cosine <= folded_cosine * size || (cosine < 0 && flat[vertex] == 0)) good[vertex] = 0;
@@ -84,8 +82,8 @@ Array<u8> outer_corners(const Diagram& diagram, const Surface& surface, std::spa
             while (!stack.empty()) {
                 const u32 cell = stack.back();
                 stack.pop_back();
-                std::atomic_ref(outer[cell]).fetch_or(static_cast<u8>(1 << corner_of(tets, cell, vertex)),
-                                                      std::memory_order_relaxed);
+                std::atomic_ref(outer[cell])
+                    .fetch_or(static_cast<u8>(1 << corner_of(tets, cell, vertex)), std::memory_order_relaxed);
                 for (int i = 0; i < 4; ++i) {
                     const u32 across = tets.neighbours[cell][static_cast<std::size_t>(i)];
                     if (across != TetMesh::outside_hull && !surface.facets.contains(cell, i) &&
@@ -100,17 +98,17 @@ Array<u8> outer_corners(const Diagram& diagram, const Surface& surface, std::spa
 
 class Peel {
 public:
-    Peel(const Diagram& diagram, const Surface& surface, std::span<const Triangle> triangles, std::span<const u8> flat,
+    Peel(const Diagram& diagram, const Surface& surface, const SurfaceMesh& mesh, std::span<const u8> flat,
          Context& context)
         : tets_(diagram.tets),
           surface_(surface),
           context_(context),
-          good_(good_points(tets_, triangles, flat)),
+          good_(good_points(tets_, mesh, flat)),
           outer_(outer_corners(diagram, surface, good_, context)),
           components_(tets_.positions.size()),
           outside_of_(tets_.positions.size(), Outside::unknown),
           is_out_(tets_.cells.size(), u8(0)) {
-        for (const Triangle& t : triangles)
+        for (const Triangle& t : mesh.mesh.triangles)
             for (std::size_t k = 0; k < 3; ++k)
                 if (good_[t[k]] == 1 && good_[t[(k + 1) % 3]] == 1) components_.unite(t[k], t[(k + 1) % 3]);
     }
@@ -204,9 +202,9 @@ private:
 
 }  // namespace
 
-Peeling peel(const Diagram& diagram, const Surface& surface, std::span<const Triangle> triangles,
-             std::span<const u8> flat, Context& context) {
-    return Peel(diagram, surface, triangles, flat, context).run();
+Peeling peel(const Diagram& diagram, const Surface& surface, const SurfaceMesh& mesh, std::span<const u8> flat,
+             Context& context) {
+    return Peel(diagram, surface, mesh, flat, context).run();
 }
 
 }  // namespace scanmill::cocones

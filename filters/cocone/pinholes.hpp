@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What the solid behind a surface adds to it: the side that is outside, and the closing of small gaps.
+
+#include "cocone/peeling.hpp"
+
+namespace scanmill::cocones {
+
+/// Reverses each component of the surface, connected through edges, whose outer side is the solid's inside for most of
+/// its area on the solid's boundary. Cost: linear.
+void face_outside(const TetMesh& tets, std::span<const u8> labels, const SurfaceMesh& mesh, Surface& surface);
+
+/// Closes gaps of the surface where the sampling is just too sparse for the vote. A gap is a part of the solid's
+/// boundary that is not in the surface, connected through edges. It is added as a whole if it joins the surface along
+/// its whole rim, with the same outer side, and no triangle of it spans an opening. Returns the number of gaps closed.
+/// Pre: the surface faces outside. Cost: linear in the cells.
+std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double lid_factor, std::span<const u8> labels,
+                           Surface& surface);
+
+/// Peels the solid off the surface, lets the surface face outside and closes its pinholes.
+Peeling close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
+                       Context& context);
+
+}  // namespace scanmill::cocones
