@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
+#include <numeric>
 
 #include "scanmill/base/elementary.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::cocones {
 
@@ -16,17 +17,11 @@ namespace {
 
 constexpr std::size_t chunk = 1 << 12;
 
-/// The unit vector in a facet, away from and at a right angle to its edge from `a` to `b`, towards its third corner.
-Vec3 away_from_edge(const Vec3& a, const Vec3& b, const Vec3& third) {
-    const Vec3 along = (b - a).normalized(), to = third - a;
-    return (to - to.dot(along) * along).normalized();
-}
-
-/// A facet at a vertex: its other two corners, and in it the directions away from the edges to them.
+/// A facet at a vertex.
 struct FanFacet {
     Side side;
-    std::array<u32, 2> ends;
-    std::array<Vec3, 2> away;
+    std::array<u32, 2> ends;  ///< its other two corners
+    Vec3 normal;  ///< of unit length, for the order vertex, ends[0], ends[1]
     bool alive = true;
 };
 
@@ -36,10 +31,9 @@ bool has_closed_fan(std::vector<FanFacet>& facets, double least_cosine) {
     const auto continues = [&](const FanFacet& facet, std::size_t end) {
         return std::ranges::any_of(facets, [&](const FanFacet& other) {
             if (!other.alive || &other == &facet) return false;
-            for (std::size_t k = 0; k < 2; ++k)
-                if (other.ends[k] == facet.ends[end] && -other.away[k].dot(facet.away[end]) >= least_cosine)
-                    return true;
-            return false;
+            // Of two facets with one orientation, one has their common edge first and the other has it second.
+            if (other.ends[1 - end] == facet.ends[end]) return other.normal.dot(facet.normal) >= least_cosine;
+            return other.ends[end] == facet.ends[end] && -other.normal.dot(facet.normal) >= least_cosine;
         });
     };
     std::size_t left = facets.size();
@@ -60,17 +54,15 @@ void collect(const Diagram& diagram, const FacetSet& set, u32 vertex, std::vecto
     const TetMesh& tets = diagram.tets;
     fan.clear();
     for (const u32 cell : diagram.cells_at[vertex])
-        for (int i = 0; i < 4; ++i) {
-            if (!set.contains(cell, i) || !owns_facet(tets, cell, i)) continue;
+        for (unsigned bits = set.of(cell); bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            if (!owns_facet(tets, cell, i)) continue;
             Triangle corners = corners_of(tets, {cell, i});
             const auto own = std::ranges::find(corners, vertex);
             if (own == corners.end()) continue;
             std::ranges::rotate(corners, own);
-            const std::array<Vec3, 3> p{tets.positions[corners[0]], tets.positions[corners[1]],
-                                        tets.positions[corners[2]]};
-            fan.push_back({{cell, i},
-                           {corners[1], corners[2]},
-                           {away_from_edge(p[0], p[1], p[2]), away_from_edge(p[0], p[2], p[1])}});
+            fan.push_back(
+                {{cell, i}, {corners[1], corners[2]}, area_vector(tets.positions.span(), corners).normalized()});
         }
 }
 
@@ -121,12 +113,14 @@ Array<u8> prune(const Diagram& diagram, FacetSet& set, double prune_angle, Conte
     const double least_cosine = elementary::turn_of(prune_angle).cosine;
     Array<u8> umbrellas(tets.positions.size());
     Array<u8> dangling(tets.cells.size(), u8(0));  // by owner cell, one bit per facet
-    for (bool changes = true; changes;) {
-        for_each_chunk(context.threads(), umbrellas.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<u32> vertices(umbrellas.size());  // whose facets have changed
+    std::iota(vertices.begin(), vertices.end(), u32(0));
+    while (!vertices.empty()) {
+        for_each_chunk(context.threads(), vertices.size(), chunk, [&](std::size_t begin, std::size_t end) {
             context.check_cancelled();
             std::vector<FanFacet> fan;
-            for (std::size_t vertex = begin; vertex < end; ++vertex) {
-                collect(diagram, set, static_cast<u32>(vertex), fan);
+            for (const u32 vertex : std::span(vertices).subspan(begin, end - begin)) {
+                collect(diagram, set, vertex, fan);
                 umbrellas[vertex] = has_closed_fan(fan, least_cosine);
                 for (const FanFacet& facet : fan)
                     if (umbrellas[vertex] == 1 && !facet.alive)
@@ -134,12 +128,15 @@ Array<u8> prune(const Diagram& diagram, FacetSet& set, double prune_angle, Conte
                             .fetch_or(static_cast<u8>(1 << facet.side.corner), std::memory_order_relaxed);
             }
         });
-        changes = false;
+        vertices.clear();
         for (u32 cell = 0; cell < dangling.size(); ++cell)
-            for (unsigned left = std::exchange(dangling[cell], u8(0)); left != 0; left &= left - 1) {
-                set.remove(tets, {cell, std::countr_zero(left)});
-                changes = true;
+            for (unsigned bits = std::exchange(dangling[cell], u8(0)); bits != 0; bits &= bits - 1) {
+                const Side side{cell, std::countr_zero(bits)};
+                set.remove(tets, side);
+                for (const u32 vertex : corners_of(tets, side)) vertices.push_back(vertex);
             }
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     }
     return umbrellas;
 }

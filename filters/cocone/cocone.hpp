@@ -46,7 +46,7 @@ struct CoconeParams {
     Angle normal_angle = Angle::degrees(60);
     /// At least 1.
     double ratio = 1.2;
-    /// 60 to 360 degrees.
+    /// 60 to 180 degrees.
     Angle gap_angle = Angle::degrees(100);
     /// Above 0, in local spacings.
     double lid_factor = 2.5;

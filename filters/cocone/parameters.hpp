@@ -30,7 +30,7 @@ void declare_parameters(Declare<Params>& declaration) {
                at_least(1))
         .param("gap-angle", field(&CoconeParams::gap_angle),
                "A point whose 16 nearest neighbours leave a wider gap in the tangent plane is a boundary point.",
-               at_least(60), at_most(360))
+               at_least(60), at_most(180))
         .param("lid-factor", field(&CoconeParams::lid_factor),
                "Triangles between boundary points with a longer edge span an opening and are left out; in mean "
                "distances to the six nearest neighbours.",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/parallel.hpp"
@@ -53,42 +54,33 @@ Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span
     return good;
 }
 
-/// By cell, bit i: corner i is a good point, and there the cell is on the outer side of the surface.
-Array<u8> outer_corners(const Diagram& diagram, const Surface& surface, std::span<const u8> good, Context& context) {
-    const TetMesh& tets = diagram.tets;
+/// By cell, bit i: corner i is a good point, and there the cell is on the outer side of the surface. From the outer
+/// side of each facet of the surface, the bits of its good corners spread through the other facets at these corners.
+Array<u8> outer_corners(const TetMesh& tets, const Surface& surface, std::span<const u8> good, Context& context) {
     Array<u8> outer(tets.cells.size(), u8(0));
-    for_each_chunk(context.threads(), good.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    for_each_chunk(context.threads(), outer.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
-        std::vector<u32> star, stack;
-        std::vector<u8> seen;
-        for (std::size_t v = begin; v < end; ++v) {
-            if (good[v] == 0) continue;
-            const u32 vertex = static_cast<u32>(v);
-            star.assign(diagram.cells_at[v].begin(), diagram.cells_at[v].end());
-            std::ranges::sort(star);
-            seen.assign(star.size(), 0);
-            const auto reach = [&](u32 cell) {
-                const auto i = static_cast<u32>(std::ranges::lower_bound(star, cell) - star.begin());
-                if (seen[i] == 0) {
-                    seen[i] = 1;
-                    stack.push_back(cell);
-                }
-            };
-            for (const u32 cell : star)
-                for (int i = 0; i < 4; ++i)
-                    if (surface.facets.contains(cell, i) && (surface.inner[cell] >> i & 1) == 0 &&
-                        tets.cells[cell][static_cast<std::size_t>(i)] != vertex)
-                        reach(cell);
+        std::vector<Side> stack;  // cells and corners
+        const auto reach = [&](u32 cell, int corner) {
+            const u8 bit = static_cast<u8>(1 << corner);
+            if ((std::atomic_ref(outer[cell]).fetch_or(bit, std::memory_order_relaxed) & bit) == 0)
+                stack.push_back({cell, corner});
+        };
+        for (std::size_t c = begin; c < end; ++c) {
+            const u32 seed = static_cast<u32>(c);
+            for (unsigned bits = surface.facets.of(seed) & ~unsigned(surface.inner[seed]); bits != 0; bits &= bits - 1)
+                for (int corner = 0; corner < 4; ++corner)
+                    if (corner != std::countr_zero(bits) &&
+                        good[tets.cells[seed][static_cast<std::size_t>(corner)]] == 1)
+                        reach(seed, corner);
             while (!stack.empty()) {
-                const u32 cell = stack.back();
+                const auto [cell, corner] = stack.back();
                 stack.pop_back();
-                std::atomic_ref(outer[cell])
-                    .fetch_or(static_cast<u8>(1 << corner_of(tets, cell, vertex)), std::memory_order_relaxed);
+                const u32 vertex = tets.cells[cell][static_cast<std::size_t>(corner)];
                 for (int i = 0; i < 4; ++i) {
                     const u32 across = tets.neighbours[cell][static_cast<std::size_t>(i)];
-                    if (across != TetMesh::outside_hull && !surface.facets.contains(cell, i) &&
-                        tets.cells[cell][static_cast<std::size_t>(i)] != vertex)
-                        reach(across);
+                    if (i != corner && across != TetMesh::outside_hull && !surface.facets.contains(cell, i))
+                        reach(across, corner_of(tets, across, vertex));
                 }
             }
         }
@@ -104,7 +96,7 @@ public:
           surface_(surface),
           context_(context),
           good_(good_points(tets_, mesh, flat)),
-          outer_(outer_corners(diagram, surface, good_, context)),
+          outer_(outer_corners(tets_, surface, good_, context)),
           components_(tets_.positions.size()),
           outside_of_(tets_.positions.size(), Outside::unknown),
           is_out_(tets_.cells.size(), u8(0)) {

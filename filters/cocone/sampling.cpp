@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
-#include <numbers>
 
 #include "scanmill/base/elementary.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/point_tree.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
-#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 #include "scanmill/geometry/tets/circumspheres.hpp"
 
@@ -36,21 +34,22 @@ public:
 
     Array<u8> flat() {
         const std::size_t count = tets_.positions.size();
-        Array<u8> flat(count), is_thin(count);
-        for_each_chunk(context_.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+        Array<u8> flat(count, u8(1)), is_thin(count, u8(1));
+        for_each_chunk(context_.threads(), tets_.cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
             context_.check_cancelled();
-            for (std::size_t vertex = begin; vertex < end; ++vertex) {
-                const u32 v = static_cast<u32>(vertex);
-                is_thin[v] = has_thin_cell(v);
-                flat[v] = is_thin[v] == 1 && has_agreeing_neighbours(v);
-            }
+            const auto clear = [](u8& flag) { std::atomic_ref(flag).store(0, std::memory_order_relaxed); };
+            for_each_hit(begin, end, [&](u32 p, u32 q, u32 r, const VoronoiEdge& edge) {
+                const bool thin = is_thin_at(p, edge);
+                if (!thin) clear(is_thin[p]);
+                if (!thin || !agree(p, q) || !agree(p, r)) clear(flat[p]);
+            });
         });
         // A flat point passes flatness on to its neighbours. The result does not depend on the order.
         std::vector<u32> queue;
         const auto spread_to = [&](u32 v) {
             if (flat[v] == 1 || is_thin[v] == 0) return;
             bool found = false;
-            for_each_neighbour(v, true, [&](u32 q) { found |= flat[q] == 1 && agree(v, q); });
+            for_each_neighbour(v, [&](u32 q) { found |= flat[q] == 1 && agree(v, q); });
             if (!found) return;
             flat[v] = 1;
             queue.push_back(v);
@@ -58,7 +57,7 @@ public:
         for (u32 v = 0; v < count; ++v) spread_to(v);
         for (std::size_t i = 0; i < queue.size(); ++i) {
             const u32 v = queue[i];
-            for_each_neighbour(v, true, spread_to);
+            for_each_neighbour(v, spread_to);
         }
         return flat;
     }
@@ -68,45 +67,47 @@ private:
         return std::abs(diagram_.poles.directions[p].dot(diagram_.poles.directions[q])) >= least_cosine_;
     }
 
-    /// Calls visit(q) for the cocone neighbours q of v; with `both`, also for the points that have v as one. A point
-    /// may be visited several times.
+    /// Calls visit(p, q, r, dual edge) for each facet of these cells whose dual edge meets the cocone of its corner p.
+    /// The other corners q and r are then cocone neighbours of p.
     template <class Visit>
-    void for_each_neighbour(u32 v, bool both, const Visit& visit) const {
-        for (const u32 cell : diagram_.cells_at[v]) {
-            const Tetrahedron& corners = tets_.cells[cell];
-            const unsigned hits = diagram_.hits[cell];
-            for (unsigned i = 0; i < 4; ++i) {
-                if (corners[i] == v) continue;
-                const unsigned own = static_cast<unsigned>(std::ranges::find(corners, v) - corners.begin());
-                for (unsigned j = 0; j < 4; ++j) {
-                    if (j == i || j == own) continue;
-                    const bool is_one = (hits >> (4 * i + own) & 1u) != 0;
-                    if (is_one || (both && (hits >> (4 * i + j) & 1u) != 0)) visit(corners[j]);
-                }
+    void for_each_hit(std::size_t begin, std::size_t end, const Visit& visit) const {
+        for (std::size_t c = begin; c < end; ++c) {
+            const u32 cell = static_cast<u32>(c);
+            for (int i = 0; i < 4; ++i) {
+                const unsigned hits = unsigned(diagram_.hits[cell]) >> (4 * i) & 15u;
+                if (hits == 0 || !owns_facet(tets_, cell, i)) continue;
+                const VoronoiEdge edge = dual_edge(tets_, diagram_.centres, cell, i);
+                const auto& facet = outward_facet[static_cast<std::size_t>(i)];
+                for (std::size_t k = 0; k < 3; ++k)
+                    if ((hits >> facet[k] & 1u) != 0)
+                        visit(corner(cell, facet[k]), corner(cell, facet[(k + 1) % 3]),
+                              corner(cell, facet[(k + 2) % 3]), edge);
             }
         }
     }
 
-    bool has_agreeing_neighbours(u32 v) const {
-        bool all = true;
-        for_each_neighbour(v, false, [&](u32 q) { all &= agree(v, q); });
-        return all;
+    /// Calls visit(q) for the cocone neighbours q of v and for the points that have v as one, some several times.
+    template <class Visit>
+    void for_each_neighbour(u32 v, const Visit& visit) const {
+        for (const u32 cell : diagram_.cells_at[v])
+            for_each_hit(cell, cell + 1, [&](u32 p, u32 q, u32 r, const VoronoiEdge&) {
+                if (p == v) {
+                    visit(q);
+                    visit(r);
+                } else if (q == v || r == v) {
+                    visit(p);
+                }
+            });
     }
 
-    /// Whether the cell reaches, in the tangent plane, at most 1 / ratio of the distance to the nearer pole.
-    bool has_thin_cell(u32 v) const {
+    u32 corner(u32 cell, int i) const { return tets_.cells[cell][static_cast<std::size_t>(i)]; }
+
+    /// Whether the edge is at most 1 / ratio of the distance to the nearer pole away where it crosses the tangent
+    /// plane.
+    bool is_thin_at(u32 v, const VoronoiEdge& edge) const {
         const Cocone cocone{tets_.positions[v], diagram_.poles.directions[v], 0};
         const double most = diagram_.poles.heights[v] / ratio_;
-        for (const u32 cell : diagram_.cells_at[v]) {
-            const Tetrahedron& corners = tets_.cells[cell];
-            const unsigned own = static_cast<unsigned>(std::ranges::find(corners, v) - corners.begin());
-            for (unsigned i = 0; i < 4; ++i)
-                if ((diagram_.hits[cell] >> (4 * i + own) & 1u) != 0 &&
-                    !(cocone.squared_reach(dual_edge(tets_, diagram_.centres, cell, static_cast<int>(i))) <=
-                      most * most))
-                    return false;
-        }
-        return true;
+        return cocone.squared_reach(edge) <= most * most;
     }
 
     const Diagram& diagram_;
@@ -115,19 +116,30 @@ private:
     Context& context_;
 };
 
-/// The widest angle between neighbouring directions from the origin to the given points, in their tangent plane.
-double widest_gap(std::span<const Vec3> points) {
-    if (points.empty()) return 2 * std::numbers::pi;
-    const auto [u, v] = directions_across(scatter_of(points).normal);
-    std::array<double, gap_neighbours> angles;
+/// Whether neighbouring directions from the origin to the given points, in the plane perpendicular to a normal, leave a
+/// gap wider than an angle of at most half a turn, given by cosine and sine.
+bool has_gap(std::span<const Vec3> points, const Vec3& normal, const elementary::Turn& angle) {
+    const auto [u, v] = directions_across(normal);
+    struct Direction {
+        double x, y;
+        double order;  ///< grows with the direction's angle, from 0 to 4
+    };
+    std::array<Direction, gap_neighbours> directions;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const double cosine = points[i].dot(u), sine = points[i].dot(v);
-        angles[i] = sine < 0 ? 2 * std::numbers::pi - angle_of(cosine, -sine) : angle_of(cosine, sine);
+        const double x = points[i].dot(u), y = points[i].dot(v), sum = std::abs(x) + std::abs(y);
+        const double turn = sum > 0 ? x / sum : 1;
+        directions[i] = {x, y, y < 0 ? 3 + turn : 1 - turn};
     }
-    std::sort(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(points.size()));
-    double widest = angles[0] + 2 * std::numbers::pi - angles[points.size() - 1];
-    for (std::size_t i = 1; i < points.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
-    return widest;
+    const auto end = directions.begin() + static_cast<std::ptrdiff_t>(points.size());
+    std::ranges::sort(directions.begin(), end, {}, &Direction::order);
+    for (auto a = directions.begin(); a != end; ++a) {
+        const auto b = a + 1 == end ? directions.begin() : a + 1;
+        // Cosine and sine of the angle from a to b, counter-clockwise, times both lengths. The gap is wider if it is
+        // more than half a turn, or if the sine of its difference from the limit is positive.
+        const double cosine = a->x * b->x + a->y * b->y, sine = a->x * b->y - a->y * b->x;
+        if (sine < 0 || sine * angle.cosine - cosine * angle.sine > 0) return true;
+    }
+    return points.size() < 2;
 }
 
 }  // namespace
@@ -150,7 +162,7 @@ Sampling sampling(const Diagram& diagram, const CoconeParams& params, Context& c
     const PointTree tree(positions, context.threads());
     Array<u32> row_of(positions.size());
     for (u32 row = 0; row < positions.size(); ++row) row_of[tree.index_of_row()[row]] = row;
-    const double least_gap = params.gap_angle.in_radians();
+    const elementary::Turn gap = elementary::turn_of(params.gap_angle.in_radians());
     tree.for_each_nearest(gap_neighbours, context.threads(), [&](const NeighbourBatch& batch) {
         context.check_cancelled();
         std::array<Vec3, gap_neighbours> near;
@@ -163,8 +175,9 @@ Sampling sampling(const Diagram& diagram, const CoconeParams& params, Context& c
             result.spacing[row] = few > 0 ? sum / static_cast<double>(few) : 0;
             for (std::size_t k = 0; k < neighbours.size(); ++k)
                 near[k] = tree.positions()[neighbours[k].index] - positions[row];
-            const double gap = widest_gap(std::span(near).first(neighbours.size()));
-            result.boundary[row] = result.flat[row] == 0 || gap > least_gap;
+            const std::span<const Vec3> others = std::span(near).first(neighbours.size());
+            // The pole of a flat point is as good a normal as a plane through the neighbours.
+            result.boundary[row] = result.flat[row] == 0 || has_gap(others, diagram.poles.directions[row], gap);
         }
     });
     result.boundary_points = static_cast<std::size_t>(std::ranges::count(result.boundary, u8(1)));

@@ -310,7 +310,7 @@ void require_usable(const TetMesh& tets, const CoconeParams& params) {
     require_range("cone-angle", params.cone_angle, 5, 40);
     require_range("prune-angle", params.prune_angle, 90, 170);
     require_range("normal-angle", params.normal_angle, 10, 90);
-    require_range("gap-angle", params.gap_angle, 60, 360);
+    require_range("gap-angle", params.gap_angle, 60, 180);
     if (!(params.ratio >= 1)) throw Error("ratio must be at least 1; it is {}", params.ratio);
     if (!(params.lid_factor > 0)) throw Error("lid-factor must be above 0; it is {}", params.lid_factor);
 }

@@ -17,25 +17,6 @@ namespace {
 constexpr std::size_t chunk = 1 << 13;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// f(t) = ((y - apex)·axis)² - sin² |y - apex|² for y = foot + t normal, as c + 2 b t + a t². The cocone is f ≤ 0. The
-/// offset from the apex to the foot is perpendicular to the normal, so f keeps its digits near the apex even if the
-/// ends of the edge are circumcentres of flat cells, far away.
-struct ConeFunction {
-    double a, b, c;
-
-    ConeFunction(const Cocone& cocone, const VoronoiEdge& edge) {
-        const Vec3 to_foot = edge.foot - cocone.apex;
-        const double tilt = edge.normal.dot(cocone.axis), height = to_foot.dot(cocone.axis);
-        a = tilt * tilt - cocone.squared_sine;
-        b = tilt * height;
-        c = height * height - cocone.squared_sine * to_foot.squaredNorm();
-    }
-    double at(double t) const { return (a * t + 2 * b) * t + c; }
-    bool is_inside(double t) const {
-        return std::isinf(t) ? a < 0 || (a == 0 && b < 0) : at(t) <= 0;  // only `to` is infinite
-    }
-};
-
 /// Outward normals of the hull's facets, summed by vertex; zero at other vertices.
 Array<Vec3> hull_directions(const TetMesh& tets) {
     Array<Vec3> sums(tets.positions.size(), Vec3::Zero());
@@ -110,14 +91,16 @@ Poles poles(const TetMesh& tets, std::span<const Vec3> centres, const VertexCell
 }
 
 bool Cocone::meets(const VoronoiEdge& edge) const {
-    const ConeFunction f(*this, edge);
-    if (f.is_inside(edge.from) || f.is_inside(edge.to)) return true;
-    if (!(f.a > 0)) return false;
-    const double lowest = -f.b / f.a;
-    return lowest > edge.from && lowest < edge.to && f.c + f.b * lowest <= 0;
+    const auto side_at = [&](double t) {
+        return side(std::isinf(t) ? edge.normal : Vec3(edge.foot - apex + t * edge.normal));
+    };
+    const int from = side_at(edge.from);
+    return from == 0 || from != side_at(edge.to);
 }
 
 double Cocone::squared_reach(const VoronoiEdge& edge) const {
+    // The offset to the foot is perpendicular to the normal, so the result keeps its digits even if the ends of the
+    // edge are circumcentres of flat cells, far away.
     const Vec3 to_foot = edge.foot - apex;
     const double tilt = edge.normal.dot(axis), height = to_foot.dot(axis), t = -height / tilt;
     return tilt != 0 && t >= edge.from && t <= edge.to ? to_foot.squaredNorm() + t * t : -1;
@@ -126,43 +109,46 @@ double Cocone::squared_reach(const VoronoiEdge& edge) const {
 Array<std::uint16_t> cocone_hits(const TetMesh& tets, std::span<const Vec3> centres, const Poles& poles,
                                  double cone_angle, Execution& execution) {
     const std::size_t count = tets.cells.size();
-    const double sine = elementary::turn_of(cone_angle).sine, squared_sine = sine * sine;
+    const double sine = elementary::turn_of(cone_angle).sine;
+    const auto cocone_of = [&](u32 vertex) {
+        return Cocone{tets.positions[vertex], poles.directions[vertex], sine * sine};
+    };
+    // By cell, two bits per corner: the side on which the corner's cocone has the cell's circumcentre, plus 1.
+    Array<u8> sides(count);
+    for_each_chunk(execution.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            unsigned bits = 0;
+            for (unsigned j = 0; j < 4; ++j) {
+                const Cocone cocone = cocone_of(tets.cells[cell][j]);
+                bits |= static_cast<unsigned>(cocone.side(centres[cell] - cocone.apex) + 1) << 2 * j;
+            }
+            sides[cell] = static_cast<u8>(bits);
+        }
+    });
     Array<std::uint16_t> hits(count);
     for_each_chunk(execution.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
         execution.check_cancelled();
         for (std::size_t c = begin; c < end; ++c) {
             const u32 cell = static_cast<u32>(c);
             unsigned bits = 0;
-            for (int i = 0; i < 4; ++i) {
-                if (!owns_facet(tets, cell, i)) continue;
-                const VoronoiEdge edge = dual_edge(tets, centres, cell, i);
-                for (int j = 0; j < 4; ++j) {
+            for (unsigned i = 0; i < 4; ++i) {
+                const u32 across = tets.neighbours[cell][i];
+                const bool at_hull = across == TetMesh::outside_hull;
+                const Vec3 ray = at_hull ? dual_edge(tets, centres, cell, static_cast<int>(i)).normal : Vec3();
+                for (unsigned j = 0; j < 4; ++j) {
                     if (j == i) continue;
-                    const u32 vertex = tets.cells[cell][static_cast<std::size_t>(j)];
-                    const Cocone cocone{tets.positions[vertex], poles.directions[vertex], squared_sine};
-                    bits |= unsigned(cocone.meets(edge)) << (4 * i + j);
-                }
-            }
-            hits[cell] = static_cast<std::uint16_t>(bits);
-        }
-    });
-    // The other cell of each facet gets the same bits.
-    Array<std::uint16_t> own = hits;
-    for_each_chunk(execution.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
-        execution.check_cancelled();
-        for (std::size_t c = begin; c < end; ++c) {
-            const u32 cell = static_cast<u32>(c);
-            unsigned bits = own[cell];
-            for (int i = 0; i < 4; ++i) {
-                if (owns_facet(tets, cell, i)) continue;
-                const u32 across = tets.neighbours[cell][static_cast<std::size_t>(i)];
-                const int back = corner_across(tets, cell, i);
-                for (int j = 0; j < 4; ++j) {
-                    const u32 vertex = tets.cells[cell][static_cast<std::size_t>(j)];
-                    if (j == i) continue;
-                    const Tetrahedron& corners = tets.cells[across];
-                    const int its = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : corners[2] == vertex ? 2 : 3;
-                    bits |= (unsigned(own[across]) >> (4 * back + its) & 1u) << (4 * i + j);
+                    const u32 vertex = tets.cells[cell][j];
+                    const int here = static_cast<int>(sides[cell] >> 2 * j & 3) - 1;
+                    int there = 0;
+                    if (at_hull) {
+                        there = cocone_of(vertex).side(ray);
+                    } else {
+                        const Tetrahedron& its = tets.cells[across];
+                        const int k = its[0] == vertex ? 0 : its[1] == vertex ? 1 : its[2] == vertex ? 2 : 3;
+                        there = static_cast<int>(sides[across] >> 2 * k & 3) - 1;
+                    }
+                    bits |= unsigned(here == 0 || here != there) << (4 * i + j);
                 }
             }
             hits[cell] = static_cast<std::uint16_t>(bits);

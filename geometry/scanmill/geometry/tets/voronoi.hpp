@@ -50,10 +50,17 @@ Poles poles(const TetMesh& tets, std::span<const Vec3> centres, const VertexCell
 struct Cocone {
     Vec3 apex;
     Vec3 axis;  ///< a unit vector
-    double squared_sine;  ///< of the cone angle
+    double squared_sine;  ///< of the cone angle, which is below 45 degrees
 
-    /// Whether a point of the edge lies in the cocone. The whole edge counts: it can enter and leave the cocone between
-    /// its ends. A point on a limit is inside. Pre: the apex is a corner of the dual facet.
+    /// The cone beyond the cocone that contains a direction: 1 for the one round the axis, -1 for the opposite one, 0
+    /// if the direction is in the cocone. A direction on a limit is in the cocone.
+    int side(const Vec3& direction) const {
+        const double along = direction.dot(axis);
+        if (along * along <= squared_sine * direction.squaredNorm()) return 0;
+        return along > 0 ? 1 : -1;
+    }
+    /// Whether a point of the edge lies in the cocone. The cones beyond the cocone are convex, so an edge does not meet
+    /// the cocone exactly if both its ends lie in the same one. Pre: the apex is a corner of the dual facet.
     bool meets(const VoronoiEdge& edge) const;
     /// The squared distance from the apex to the point where the edge crosses the tangent plane, which is perpendicular
     /// to the axis; -1 if it does not. Pre: as above.
