@@ -62,12 +62,14 @@ hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmil
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
+# Further filters of surfaces.py.
+surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson
 
 bench-quality: deps ## compare our results with trimesh, Open3D, three papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) peers-drivers
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) $(surfaces) peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/outliers.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
@@ -78,6 +80,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench
