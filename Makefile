@@ -16,7 +16,7 @@ demo: release data ## turn scans into closed meshes and print tables
 	build/release/bin/scanmill run workflows/raw-scans.yaml build/virtual-views/hand-default.ply -o build/demo
 	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
 
-nightly: release ## compare three surfaces of virtual scans with the accepted run, and print the report
+nightly: release ## compare four surfaces of virtual scans with the accepted run, and print the report
 	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)
 	build/release/bin/scanmill report build/nightly
 

@@ -46,7 +46,7 @@ TEST_F(ReadyNames, EveryReadyName_IsFoundFromAnEmptyFolder) {
 TEST_F(ReadyNames, Nightly_NeedsNoFile) {
     const ProgramResult result = scanmill({"batch", "nightly", "--dry-run", "--no-cache"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.out, HasSubstr(" 36 cells\n"));
+    EXPECT_THAT(result.out, HasSubstr(" 48 cells\n"));
     EXPECT_THAT(result.err, IsEmpty());
 }
 
