@@ -13,7 +13,8 @@ SCANMILL_FILTER() {
             "Among steps of equal gain, the one at the larger triangle comes first, then the one whose cell has the "
             "lower corners. Among chains of flips, the one with the lower first cell comes first.")
         .in<TetMesh>("tets",
-                     "Cells of a Delaunay tetrahedralisation, labelled by alpha-solid, with a manifold boundary.")
+                     "Cells of a Delaunay tetrahedralisation, labelled by alpha-solid or tight-cocone, with a manifold "
+                     "boundary.")
         .made_by("alpha-solid")
         .out<TriangleMesh>("mesh", "The resulting boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, with the removed ones labelled outside.")

@@ -29,7 +29,7 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
             .hint("'delaunay' computes them");
     if (tets.inside.empty())
         throw Error("needs cells labelled inside or outside; none of the {} is labelled", tets.cells.size())
-            .hint("put 'alpha-solid' between 'delaunay' and 'sculpt'");
+            .hint("put 'alpha-solid' or 'tight-cocone' between 'delaunay' and 'sculpt'");
     if (tets.inside.size() != tets.cells.size())
         throw Error("needs the labels of all {} cells; there are {}", tets.cells.size(), tets.inside.size());
     const double gain = params.min_gain.in_radians();
@@ -44,7 +44,7 @@ void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
         "(first {}) they do not form one closed fan",
         triangles, count_text(defects.edges, "edge has", "edges have"),
         count_text(defects.vertices.size(), "vertex", "vertices"), defects.vertices.front())
-        .hint("'alpha-solid: {alpha: auto}' gives a manifold boundary");
+        .hint("'alpha-solid: {alpha: auto}' and 'tight-cocone' give a manifold boundary");
 }
 
 /// Number of vertices in cells labelled 1.

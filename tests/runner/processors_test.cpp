@@ -49,6 +49,8 @@ const std::vector<Step> steps{
     {"tetrahedra", "delaunay", "", "points: smoothed"},
     {"solid", "alpha-solid", "", "tets: tetrahedra"},
     {"sculpted", "sculpt", "", "tets: solid.tets"},
+    {"open-surface", "cocone", "", "tets: tetrahedra"},
+    {"closed-surface", "tight-cocone", "", "tets: tetrahedra"},
     {"reduced", "decimate", "max-error: 1 %diag", "mesh: sculpted"},
     {"lines", "features", "", "mesh: filled"},
     {"measured", "measure", "certify: true", "mesh: reduced, truth: sculpted"},
