@@ -5,6 +5,7 @@ import pathlib
 
 import cleanup_pictures as cleanups
 import cloud_pictures as clouds
+import cocone_pictures as cocones
 import frame_pictures as frames
 import patch_pictures as patches
 import probe_pictures as probes
@@ -19,6 +20,7 @@ def main():
         ("alpha_solid", surfaces.alpha_solid),
         ("apply_transform", frames.apply_transform),
         ("cluster_mesh", surfaces.cluster_mesh),
+        ("cocone", cocones.cocone),
         ("crop", clouds.crop),
         ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),
@@ -38,6 +40,7 @@ def main():
         ("sculpt", surfaces.sculpt),
         ("smooth", cleanups.smooth),
         ("tessellate", patches.tessellate),
+        ("tight_cocone", cocones.tight_cocone),
         ("virtual_probe", frames.virtual_probe),
         ("virtual_scan", clouds.virtual_scan),
         ("voxel_thin", clouds.voxel_thin),
