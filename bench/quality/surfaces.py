@@ -38,8 +38,8 @@ normals, thinned by `voxel-thin` with voxels of {VOXEL} %. All filters have thei
 *mean* and *largest* are distances between mesh and model, in both directions, in percent of the diagonal. *pieces*,
 *loops* and *genus* are those of the mesh, with those of the model in brackets where they differ; a mesh that is not a
 manifold has no genus. *used* is the share of the points that are vertices of the mesh; points that `fill-holes` adds
-do not count. *cuts* counts pairs of intersecting triangles. *seconds* is the time of all steps from the points to the
-mesh."""
+do not count. *cuts* counts pairs of intersecting triangles. *seconds* is the CPU time of all steps from the points to
+the mesh."""
 
 
 def surfaces_of(program, points, model, folder, limit):
@@ -49,7 +49,7 @@ def surfaces_of(program, points, model, folder, limit):
     for cell in report["cells"]:
         steps = scanmill.steps(report, cell)
         made = [step for name, step in steps.items() if name != "read"]
-        facts = {"outcome": cell["outcome"], "seconds": sum(step.get("seconds", 0) for step in made)}
+        facts = {"outcome": cell["outcome"], "seconds": sum(step.get("cpu-seconds", 0) for step in made)}
         if cell["outcome"] == "failed":
             error = cell["error"]
             facts["reason"] = error["message"] if isinstance(error, dict) else error
