@@ -52,7 +52,7 @@ def surfaces_of(program, points, model, folder, limit):
         facts = {"outcome": cell["outcome"], "seconds": sum(step.get("cpu-seconds", 0) for step in made)}
         if cell["outcome"] == "failed":
             error = cell["error"]
-            facts["reason"] = error["message"] if isinstance(error, dict) else error
+            facts["reason"] = (error["message"] if isinstance(error, dict) else error).splitlines()[0]
         else:
             mesh = scanmill.mesh(cell)
             facts |= {"vertices": mesh["properties"]["points"], "closed": mesh["properties"]["closed"],
