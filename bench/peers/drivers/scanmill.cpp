@@ -27,6 +27,7 @@
 #include "sculpt/sculpt.hpp"
 #include "smooth/smooth.hpp"
 #include "tessellate/tessellate.hpp"
+#include "tight_cocone/tight_cocone.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace {
@@ -236,6 +237,21 @@ Json sculpted(Held& held, const Json& request) {
             {"triangles", result.mesh.triangles.size()}};
 }
 
+/// From points to the closed mesh of tight-cocone.
+Json tightly_closed(Held& held, const Json& request) {
+    Context context = context_for(request);
+    DelaunayResult tets;
+    const double tetrahedralising = peers::seconds_of([&] { tets = delaunay(held.cloud, {}, context); });
+    TightCoconeResult result;
+    const double closing = peers::seconds_of([&] { result = tight_cocone(tets.tets, {}, context); });
+    return {{"seconds", tetrahedralising + closing},
+            {"delaunay_seconds", tetrahedralising},
+            {"tight_cocone_seconds", closing},
+            {"cells", tets.tets.cells.size()},
+            {"triangles", result.mesh.triangles.size()},
+            {"unused", result.unused}};
+}
+
 Json grown(Held& held, const Json& request) {
     Context context = context_for(request);
     RegionGrowResult result;
@@ -382,6 +398,7 @@ int main() {
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},
+                          {"tight-cocone", with_held(tightly_closed)},
                           {"region-grow", with_held(grown)},
                           {"cluster-mesh", with_held(clustered)},
                           {"decimate", with_held(decimated)},

@@ -1,38 +1,66 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From points to a mesh: tetrahedralisation, alpha-solid and sculpting, compared with the tetrahedralisation alone."""
+"""From points to a mesh, compared with the tetrahedralisation alone: by alpha-solid and sculpt, and by tight-cocone."""
+from dataclasses import dataclass
+
 from harness.row import Contender, Row, in_threads
 
-BARE = "stops after the tetrahedralisation, the first of the three steps; the ratio compares all three with it"
+
+@dataclass(frozen=True)
+class Method:
+    """A way from points to a mesh that begins with delaunay."""
+
+    prefix: str  #: the start of its rows' names
+    job: str  #: the job's name in the driver
+    title: str
+    steps: str  #: in words
+    bare: str  #: the end of the remark on CGAL, which only tetrahedralises
+    facts: tuple  #: that must not depend on the number of threads
+    filters: tuple
+
+
+METHODS = [
+    Method("mesh", "sculpt", "a sculpted mesh", "delaunay, alpha-solid with an automatic radius and sculpt",
+           "the first of the three steps; the ratio compares all three with it",
+           ("cells", "alpha", "triangles", "removed", "interior_points"), ("delaunay", "alpha-solid", "sculpt")),
+    Method("tight-cocone", "tight-cocone", "the closed mesh of tight-cocone", "delaunay and tight-cocone",
+           "the first of the two steps; the ratio compares both with it",
+           ("cells", "triangles", "unused"), ("delaunay", "tight-cocone")),
+]
 
 
 def rows(inputs, large):
+    return [one for method in METHODS for one in rows_of(method, inputs, large)]
+
+
+def rows_of(method, inputs, large):
     found = [
-        row("mesh-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
-        row("mesh-torus", "bumpy torus", inputs.torus(350_000)),
-        row("mesh-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
+        row(method, "bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
+        row(method, "torus", "bumpy torus", inputs.torus(350_000)),
+        row(method, "dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
     ]
     if large:
-        # One round of Scanmill takes half a minute and more than 3 gigabytes.
+        # One round of Scanmill takes half a minute and more, and more than 3 gigabytes.
         torus = inputs.torus(3_500_000)
-        more = {"warm_up": False, "rounds": 2, "grows_from": "mesh-torus"}
-        found.append(row("mesh-large-torus", "large bumpy torus", torus, **more))
+        more = {"warm_up": False, "rounds": 2, "grows_from": f"{method.prefix}-torus"}
+        found.append(row(method, "large-torus", "large bumpy torus", torus, **more))
     return found
 
 
-def row(name, shape, cloud, **more):
+def row(method, name, shape, cloud, **more):
     load = cloud.load()
     return Row(
-        name=name,
-        title=f"From points to a sculpted mesh, {shape}",
+        name=f"{method.prefix}-{name}",
+        title=f"From points to {method.title}, {shape}",
         inputs=[cloud],
         contenders=[
-            *in_threads([1, 2], "scanmill", {"do": "sculpt"}, prepare=load),
-            Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load, differs=BARE),
+            *in_threads([1, 2], "scanmill", {"do": method.job}, prepare=load),
+            Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load,
+                      differs=f"stops after the tetrahedralisation, {method.bare}"),
         ],
-        equal="the points in memory as doubles. Scanmill runs delaunay, alpha-solid with an automatic radius and "
-        "sculpt in one process and delivers a mesh; CGAL makes no surface.",
-        agree={"cells": 0, "alpha": 0, "triangles": 0, "removed": 0, "interior_points": 0},
-        filters=["delaunay", "alpha-solid", "sculpt"],
+        equal=f"the points in memory as doubles. Scanmill runs {method.steps} in one process and delivers a mesh; CGAL "
+        "makes no surface.",
+        agree={fact: 0 for fact in method.facts},
+        filters=list(method.filters),
         peak_per="cells",
         **more,
     )
