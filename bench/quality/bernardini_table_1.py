@@ -78,19 +78,6 @@ def beside_its_model(options, path, mesh):
     return found
 
 
-def take(entry, judgement, threads):
-    """Adds one run. Only seconds may differ between runs."""
-    if judgement.get("failure"):
-        entry["failure"] = judgement["failure"]
-        return
-    seconds = judgement.pop("seconds")
-    different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
-    if different:
-        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
-    entry.update(judgement)
-    entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
-
-
 def run(options, folder):
     """The results: entries named "objects", in the order of STAND_INS."""
     pairs = [begun(one, options) for one in STAND_INS]
@@ -102,7 +89,7 @@ def run(options, folder):
                                   threads=1 if threads == "1" else 0, until="surface")
             for cell in report["cells"]:
                 entry, path = there[cell["scan"]]
-                take(entry, judged(report, cell), threads)
+                paper.take(entry, judged(report, cell), threads)
                 if not entry["failure"] and "spacing" not in entry:
                     entry.update(beside_its_model(options, path, scanmill.mesh(cell)["file"]))
     return {"objects": [entry for entry, _ in pairs]}

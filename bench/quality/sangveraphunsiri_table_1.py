@@ -107,19 +107,11 @@ def expected_triangles(entry):
 
 
 def take(entry, judgement, threads):
-    """Adds one run. Only seconds may differ between runs."""
-    if judgement.get("failure"):
-        entry["failure"] = judgement["failure"]
-        return
-    seconds = judgement.pop("seconds")
-    different = [name for name, value in judgement.items() if entry.get(name, value) != value]
-    if different:
-        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
-    entry.update(judgement)
-    if entry["triangles"] != expected_triangles(entry):
+    """Adds one run, whose counts must fit together."""
+    paper.take(entry, judgement, threads)
+    if not entry["failure"] and entry["triangles"] != expected_triangles(entry):
         raise scanmill.Broken(f"{entry['file']}: {entry['triangles']} triangles, but points, components, genus and "
                               f"boundaries give {expected_triangles(entry)}")
-    entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
 
 
 def run(options, folder):

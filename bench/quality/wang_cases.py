@@ -5,6 +5,7 @@ import pathlib
 
 import paper_wang as paper
 from tables import scanmill
+from tables.paper import take
 
 WORKFLOWS = pathlib.Path(__file__).resolve().parents[2] / "workflows"
 FILTERS = ("voxel-thin", "region-grow", "features")
@@ -80,20 +81,6 @@ def its_model(options, path):
     if info["kind"] != "mesh":
         return None
     return {"loops": info["boundary-loops"], "genus": info.get("genus"), "components": info["components"]}
-
-
-def take(entry, judgement, threads):
-    """Adds one run. Only seconds may differ between runs."""
-    if judgement.get("failure"):
-        entry["failure"] = judgement["failure"]
-        return
-    judgement = dict(judgement)
-    seconds = judgement.pop("seconds")
-    different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
-    if different:
-        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
-    entry.update(judgement)
-    entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
 
 
 def cases_of(options, hyperboloid):

@@ -9,6 +9,19 @@ from harness import machine
 from . import page, scanmill
 
 
+def take(entry, judgement, threads):
+    """Adds one run to an entry. Only seconds may differ between runs."""
+    if judgement.get("failure"):
+        entry["failure"] = judgement["failure"]
+        return
+    counts = {name: value for name, value in judgement.items() if name != "seconds"}
+    different = [name for name, value in counts.items() if "seconds" in entry and entry[name] != value]
+    if different:
+        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
+    entry.update(counts)
+    entry.setdefault("seconds", {}).setdefault(threads, []).append(judgement["seconds"])
+
+
 def write(name, options, run, lines_of, tried):
     """Writes NAME.md and NAME.json, prints the page, and returns the exit code: 1 if an entry failed.
 

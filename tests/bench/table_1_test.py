@@ -6,6 +6,7 @@ import unittest
 import bernardini_table_1 as bench
 import table_1_page as page
 from paper_table_1 import PAPER, STAND_INS, WITHOUT
+from tables.paper import take
 from tables.scanmill import Broken
 
 
@@ -32,8 +33,8 @@ REPORT = {
 def entry(paper="Femur", model=None, **more):
     made = {"paper": paper, "file": "femur.off", "what": "a bone", "failure": "", "skipped": ""}
     judgement = bench.judged(REPORT, REPORT["cells"][0])
-    bench.take(made, copy.deepcopy(judgement), "1")
-    bench.take(made, copy.deepcopy(judgement), "all")
+    take(made, copy.deepcopy(judgement), "1")
+    take(made, copy.deepcopy(judgement), "all")
     return {**made, "spacing": 0.125, "model": model, **more}
 
 
@@ -48,13 +49,13 @@ class ReportTest(unittest.TestCase):
 
     def test_failed_scan_is_a_failure_with_its_reason(self):
         made = entry()
-        bench.take(made, bench.judged(REPORT, {"outcome": "failed", "error": "too flat"}), "1")
+        take(made, bench.judged(REPORT, {"outcome": "failed", "error": "too flat"}), "1")
         self.assertEqual(made["failure"], "too flat")
 
     def test_runs_that_differ_are_an_error(self):
         other = bench.judged(REPORT, REPORT["cells"][0])
         with self.assertRaisesRegex(Broken, "different triangles"):
-            bench.take(entry(), {**other, "triangles": 1996}, "1")
+            take(entry(), {**other, "triangles": 1996}, "1")
 
     def test_workflow_without_a_step_is_an_error_that_names_it(self):
         cell = {**REPORT["cells"][0], "steps": [0, 1, 2]}
