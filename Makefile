@@ -62,10 +62,10 @@ hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmil
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
-# Further filters of surfaces.py.
+# Further filters of surfaces.py and woo_dey_table_1.py.
 surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson
 
-bench-quality: deps ## compare our results with trimesh, Open3D, three papers and other decimations: LARGE=1
+bench-quality: deps ## compare our results with trimesh, Open3D, four papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
@@ -75,6 +75,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
+	python3 bench/quality/woo_dey_table_1.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
