@@ -244,12 +244,9 @@ Json tightly_closed(Held& held, const Json& request) {
     const double tetrahedralising = peers::seconds_of([&] { tets = delaunay(held.cloud, {}, context); });
     TightCoconeResult result;
     const double closing = peers::seconds_of([&] { result = tight_cocone(tets.tets, {}, context); });
-    return {{"seconds", tetrahedralising + closing},
-            {"delaunay_seconds", tetrahedralising},
-            {"tight_cocone_seconds", closing},
-            {"cells", tets.tets.cells.size()},
-            {"triangles", result.mesh.triangles.size()},
-            {"unused", result.unused}};
+    return {{"seconds", tetrahedralising + closing},     {"delaunay_seconds", tetrahedralising},
+            {"tight_cocone_seconds", closing},           {"cells", tets.tets.cells.size()},
+            {"triangles", result.mesh.triangles.size()}, {"unused", result.unused}};
 }
 
 Json grown(Held& held, const Json& request) {
