@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cocone/pinholes.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "cocone/candidates.hpp"
@@ -95,7 +96,7 @@ private:
 
 }  // namespace
 
-void face_outside(const TetMesh& tets, std::span<const u8> labels, const SurfaceMesh& mesh, Surface& surface) {
+bool face_outside(const TetMesh& tets, std::span<const u8> labels, const SurfaceMesh& mesh, Surface& surface) {
     const std::size_t count = mesh.mesh.triangles.size();
     DisjointSets components(count);
     for (u32 h = 0; h < mesh.opposite.size(); ++h)
@@ -113,11 +114,13 @@ void face_outside(const TetMesh& tets, std::span<const u8> labels, const Surface
         const double area = area_vector(tets.positions.span(), corners_of(tets, side)).norm();
         excess[component] += is_inside(labels, side) == is_inner(surface, side) ? area : -area;
     });
+    if (std::ranges::none_of(excess, [](double area) { return area < 0; })) return false;
     for_each_facet([&](const Side& side, u32 component) {
         if (!(excess[component] < 0)) return;
         for (const Side& its : {side, other_side(tets, side)})
             if (its.is_cell()) surface.inner[its.cell] = static_cast<u8>(surface.inner[its.cell] ^ 1 << its.corner);
     });
+    return true;
 }
 
 std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double lid_factor, std::span<const u8> labels,
@@ -134,14 +137,15 @@ std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double
     return closed;
 }
 
-Peeling close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
+SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
                        Context& context) {
     const TetMesh& tets = diagram.tets;
-    const SurfaceMesh mesh(tets, surface);
+    SurfaceMesh mesh(tets, surface);
     Peeling peeling = peel(diagram, surface, mesh, sampling.flat, context);
-    face_outside(tets, peeling.labels, mesh, surface);
-    close_pinholes(tets, sampling, params.lid_factor, peeling.labels, surface);
-    return peeling;
+    const bool is_turned = face_outside(tets, peeling.labels, mesh, surface);
+    const std::size_t closed = close_pinholes(tets, sampling, params.lid_factor, peeling.labels, surface);
+    if (is_turned || closed > 0) mesh = SurfaceMesh(tets, surface);
+    return {std::move(peeling), std::move(mesh)};
 }
 
 }  // namespace scanmill::cocones

@@ -7,8 +7,8 @@
 namespace scanmill::cocones {
 
 /// Reverses each component of the surface, connected through edges, whose outer side is the solid's inside for most of
-/// its area on the solid's boundary. Cost: linear.
-void face_outside(const TetMesh& tets, std::span<const u8> labels, const SurfaceMesh& mesh, Surface& surface);
+/// its area on the solid's boundary. Returns whether there is one. Cost: linear.
+bool face_outside(const TetMesh& tets, std::span<const u8> labels, const SurfaceMesh& mesh, Surface& surface);
 
 /// Closes gaps of the surface where the sampling is just too sparse for the vote. A gap is a part of the solid's
 /// boundary that is not in the surface, connected through edges. It is added as a whole if it joins the surface along
@@ -17,8 +17,13 @@ void face_outside(const TetMesh& tets, std::span<const u8> labels, const Surface
 std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double lid_factor, std::span<const u8> labels,
                            Surface& surface);
 
+struct SurfaceWithSolid {
+    Peeling peeling;
+    SurfaceMesh mesh;  ///< of the surface as it is then
+};
+
 /// Peels the solid off the surface, lets the surface face outside and closes its pinholes.
-Peeling close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
+SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
                        Context& context);
 
 }  // namespace scanmill::cocones

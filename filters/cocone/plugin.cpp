@@ -19,7 +19,7 @@ SCANMILL_FILTER() {
         .adds({"pole-normal", "flat", "boundary"})
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation without weights.")
         .made_by("delaunay")
-        .out<TriangleMesh>("mesh", "The surface, a manifold that may be open.")
+        .out<TriangleMesh>("mesh", "The surface, open where the scan is.")
         .out<FeatureGraph>("features", "The boundary loops of the surface.");
     cocones::declare_parameters(declaration);
     return declaration.metric("triangles", Unit::count, "Triangles of the surface.", headline)

@@ -137,7 +137,8 @@ bool has_gap(std::span<const Vec3> points, const Vec3& normal, const elementary:
         // Cosine and sine of the angle from a to b, counter-clockwise, times both lengths. The gap is wider if it is
         // more than half a turn, or if the sine of its difference from the limit is positive.
         const double cosine = a->x * b->x + a->y * b->y, sine = a->x * b->y - a->y * b->x;
-        if (sine < 0 || sine * angle.cosine - cosine * angle.sine > 0) return true;
+        const double difference = b->order - a->order + (a + 1 == end ? 4 : 0);
+        if (difference > 2 || sine * angle.cosine - cosine * angle.sine > 0) return true;
     }
     return points.size() < 2;
 }

@@ -25,6 +25,9 @@ namespace {
 
 /// Above this share of the area, a surface that no point shows is worth a warning, and above the second one a doubt.
 constexpr double remarkable_share = 0.001, doubtful_share = 0.1;
+/// Above this share of unused points, a result is doubtful. Clean dense models leave none; models with grooves, noise and
+/// outliers leave more.
+constexpr double doubtful_unused = 0.02;
 
 void require_noise(const TightCoconeParams& params) {
     if (params.noise_neighbours < 1) throw Error("noise-neighbours must be at least 1; it is 0");
@@ -86,8 +89,9 @@ std::vector<bool> measure_invented(const TetMesh& tets, const Surface& surface, 
     return is_invented;
 }
 
-void warn_about(const TightCoconeResult& result, std::size_t points, const std::function<bool(u32)>& is_invented,
-                Context& context) {
+/// `drops_points`: whether the noise mode leaves points out by design.
+void warn_about(const TightCoconeResult& result, std::size_t points, bool drops_points,
+                const std::function<bool(u32)>& is_invented, Context& context) {
     const double share = result.invented_area / result.area;
     const std::string text = fmt::format(
         "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {} and sharp or sparse "
@@ -95,7 +99,7 @@ void warn_about(const TightCoconeResult& result, std::size_t points, const std::
         100 * share, result.invented_area, result.area, symbol(result.tets.frame.unit),
         count_text(result.holes_filled, "hole", "holes"));
     if (share > doubtful_share)
-        context.doubt(text + "; check the result before using it", "mesh");
+        context.doubt(text + "; check the result before using it");
     else if (share > remarkable_share)
         context.warn(text);
     if (result.removed_blobs > 0)
@@ -103,9 +107,12 @@ void warn_about(const TightCoconeResult& result, std::size_t points, const std::
                                  count_text(result.removed_blobs, "closed component", "closed components"),
                                  by_count(result.removed_blobs, "lies", "lie"),
                                  by_count(result.removed_blobs, "is", "are")));
-    if (result.unused > 0)
-        context.warn(fmt::format("{} of {} points {} not on the surface", result.unused, points,
-                                 by_count(result.unused, "is", "are")));
+    const std::string left_out = fmt::format("{} of {} points {} not on the surface", result.unused, points,
+                                             by_count(result.unused, "is", "are"));
+    if (!drops_points && static_cast<double>(result.unused) > doubtful_unused * static_cast<double>(points))
+        context.doubt(left_out + "; thin the scan, or remove its noise and outliers first");
+    else if (result.unused > 0)
+        context.warn(left_out);
     for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt), "mesh");
     for (std::string& doubt : doubts_about_handles(result.mesh, context, is_invented))
         context.doubt(std::move(doubt), "mesh");
@@ -143,7 +150,7 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     context.progress(0.5);
     Surface surface = surface_of(diagram, samples, params, context);
     context.progress(0.7);
-    Peeling peeling = close_by_solid(diagram, samples, params, surface, context);
+    auto [peeling, open] = close_by_solid(diagram, samples, params, surface, context);
     result.good = peeling.good;
     result.poor = tets.positions.size() - peeling.good;
     result.boundary_points = samples.boundary_points;
@@ -155,7 +162,7 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     context.progress(0.85);
     result.mended_vertices = mend(diagram, peeling.labels, context);
     Array<Triangle> boundary = boundary_triangles(tets, peeling.labels, context.threads());
-    result.holes_filled = spanned_loops(SurfaceMesh(tets, surface), boundary);
+    result.holes_filled = spanned_loops(open, boundary);
     const Array<Vec3> outward = outward_directions(tets.positions.span(), boundary);
     ColumnTable columns = with_sampling(tets, diagram, samples, outward, context);
     result.tets.inside = std::move(peeling.labels);
@@ -173,7 +180,7 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     result.unused = given.positions.size() - result.mesh.positions.size();
 
     warn_about(
-        result, given.positions.size(), [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); }, context);
+        result, given.positions.size(), params.noise != TightCoconeParams::Noise::none, [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); }, context);
     report(result, context);
     context.progress(1);
     return result;
