@@ -43,8 +43,8 @@ void report_gaps(const CoconeResult& result, std::size_t points, Context& contex
         context.doubt(fmt::format(
             "the surface has {} gaps of less than {} median edges round: the scan is too noisy or too sparse there",
             gaps, short_loop));
-    const std::string text = fmt::format("{} of {} points {} in no triangle", result.unused, points,
-                                         by_count(result.unused, "is", "are"));
+    const std::string text =
+        fmt::format("{} of {} points {} in no triangle", result.unused, points, by_count(result.unused, "is", "are"));
     if (points_per_unused * result.unused > points)
         context.doubt(text + "; thin the scan, or remove its noise first");
     else if (result.unused > 0)

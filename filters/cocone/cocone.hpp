@@ -53,8 +53,9 @@ struct CoconeParams {
 };
 
 struct CoconeResult {
-    /// The surface. Each edge has one or two triangles, and their orientations agree; a vertex may have several fans. Its vertices are those of its triangles, in input order, with
-    /// their columns and three more: `pole-normal` (3 × float64, outwards), `flat` and `boundary` (uint8).
+    /// The surface. Each edge has one or two triangles, and their orientations agree; a vertex may have several fans.
+    /// Its vertices are those of its triangles, in input order, with their columns and three more: `pole-normal` (3 ×
+    /// float64, outwards), `flat` and `boundary` (uint8).
     TriangleMesh mesh;
     /// The boundary loops of the mesh.
     FeatureGraph features;
@@ -72,8 +73,8 @@ struct CoconeResult {
 ///       solid behind it. The bytes do not depend on the number of threads.
 /// Ties: a direction exactly on a limit of a cocone is inside.
 /// Cost: linear in the cells, and a search for 16 neighbours of each point; about 90 bytes per cell.
-/// Metrics: see plugin.cpp. Warns of unused points. Doubts the result if they are more than 2 %, and if it has more than
-/// three short loops and more than one per 1,000 vertices; a loop is short below 12 median edges.
+/// Metrics: see plugin.cpp. Warns of unused points. Doubts the result if they are more than 2 %, and if it has more
+/// than three short loops and more than one per 1,000 vertices; a loop is short below 12 median edges.
 CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& context);
 
 }  // namespace scanmill

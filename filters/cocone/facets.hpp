@@ -2,7 +2,8 @@
 #pragma once
 /// Sets of facets of a tetrahedralisation, and rotations around their edges.
 
-#include <optional>
+#include <algorithm>
+#include <vector>
 
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/geometry/tets/edge_walk.hpp"
@@ -95,28 +96,26 @@ struct OrientedFacet {
     bool operator==(const OrientedFacet&) const = default;
 };
 
-/// The facet of the set that continues an oriented facet across an edge: the first one seen from the outer side, with
-/// its outer side towards it. The edge is opposite to the facet's corner `third`. Space outside the hull counts as one
-/// cell.
-inline std::optional<OrientedFacet> continuation(const TetMesh& tets, const FacetSet& set, const OrientedFacet& facet,
-                                                 u32 third) {
+/// The other facets of the set at an edge of an oriented facet, in the order in which they are seen from its outer
+/// side, each with its own outer side towards the facet before. The edge is opposite to the facet's corner `third`.
+/// Space outside the hull counts as one cell. `accepts(side)` decides which facets are in the set.
+template <class Accepts>
+void facets_seen(const TetMesh& tets, const OrientedFacet& facet, u32 third, const Accepts& accepts,
+                 std::vector<OrientedFacet>& seen) {
+    seen.clear();
     const Side other = other_side(tets, facet.side);
     const Side &outer = facet.inner ? other : facet.side, &inner = facet.inner ? facet.side : other;
-    std::optional<OrientedFacet> found;
-    if (outer.is_cell()) {
-        const bool at_hull = rotate(tets, outer, third, [&](const Side& side) {
-            if (set.contains(side)) found = {side, false};
-            return found.has_value();
-        });
-        if (found || !at_hull) return found;
-    }
-    // Beyond the hull, the turn goes on from the hull's other facet at the edge, which is found from behind.
-    if (inner.is_cell())
-        rotate(tets, inner, third, [&](const Side& side) {
-            if (set.contains(side)) found = {side, true};
+    const auto collect = [&](bool from_inside) {
+        return [&, from_inside](const Side& side) {
+            if (accepts(side)) seen.push_back({side, from_inside});
             return false;
-        });
-    return found;
+        };
+    };
+    if (outer.is_cell() && !rotate(tets, outer, third, collect(false))) return;
+    // Beyond the hull, the turn goes on from the hull's other facet at the edge; these facets are found from behind.
+    const auto begin = static_cast<std::ptrdiff_t>(seen.size());
+    if (inner.is_cell()) rotate(tets, inner, third, collect(true));
+    std::reverse(seen.begin() + begin, seen.end());
 }
 
 }  // namespace scanmill::cocones

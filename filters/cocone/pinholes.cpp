@@ -137,8 +137,8 @@ std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double
     return closed;
 }
 
-SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
-                       Context& context) {
+SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params,
+                                Surface& surface, Context& context) {
     const TetMesh& tets = diagram.tets;
     SurfaceMesh mesh(tets, surface);
     Peeling peeling = peel(diagram, surface, mesh, sampling.flat, context);

@@ -23,7 +23,7 @@ struct SurfaceWithSolid {
 };
 
 /// Peels the solid off the surface, lets the surface face outside and closes its pinholes.
-SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Surface& surface,
-                       Context& context);
+SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params,
+                                Surface& surface, Context& context);
 
 }  // namespace scanmill::cocones

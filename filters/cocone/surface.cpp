@@ -19,6 +19,14 @@ namespace scanmill::cocones {
 
 namespace {
 
+std::size_t count(const TetMesh& tets, const FacetSet& set) {
+    std::size_t number = 0;
+    for (u32 cell = 0; cell < tets.cells.size(); ++cell)
+        for (unsigned bits = set.of(cell); bits != 0; bits &= bits - 1)
+            number += owns_facet(tets, cell, std::countr_zero(bits));
+    return number;
+}
+
 /// Takes a manifold from the candidates by walking over their outer side.
 class SurfaceWalk {
 public:
@@ -30,17 +38,19 @@ public:
           context_(context),
           taken_(tets_.cells.size()),
           inner_(tets_.cells.size(), u8(0)),
-          settled_(tets_.cells.size(), std::uint16_t(0)) {}
+          settled_(tets_.cells.size(), std::uint16_t(0)),
+          left_count_(count(tets_, left)) {}
 
     /// Walks over every component of the candidates. What a walk does not reach is walked over by itself, if it has a
     /// vertex with an umbrella.
     void run() {
-        while (true) {
+        while (left_count_ > 0) {
             const std::vector<OrientedFacet> seeds = outermost_facets();
-            if (seeds.empty()) return remove_surplus();
+            if (seeds.empty()) break;
             for (const OrientedFacet& seed : seeds)
                 if (left_.contains(seed.side)) walk(seed);
         }
+        remove_surplus();
     }
 
     FacetSet take_facets() { return std::move(taken_); }
@@ -147,8 +157,12 @@ private:
         if ((inner_[facet.side.cell] >> facet.side.corner & 1) != 0) return facet.inner;
         return !facet.inner;
     }
+    void drop(const Side& side) {
+        left_.remove(tets_, side);
+        --left_count_;
+    }
     void take(const OrientedFacet& facet) {
-        left_.remove(tets_, facet.side);
+        drop(facet.side);
         taken_.add(tets_, facet.side);
         const Side inner = facet.inner ? facet.side : other_side(tets_, facet.side);
         if (inner.is_cell()) inner_[inner.cell] = static_cast<u8>(inner_[inner.cell] | 1 << inner.corner);
@@ -183,14 +197,13 @@ private:
     void cross(const OrientedFacet& facet, u32 third, std::size_t most) {
         if (is_settled(facet.side, third) || !taken_.contains(facet.side)) return;
         const auto [a, b] = edge_of(facet.side, third);
-        std::vector<Side>& others = others_;
-        others.clear();
-        std::size_t taken = 0;
-        for_each_facet_at(tets_, facet.side, third, [&](const Side& side) {
-            if (left_.contains(side)) others.push_back(side);
-            taken += taken_.contains(side);
-        });
-        const bool is_ambiguous = others.size() + taken > 1;
+        facets_seen(
+            tets_, facet, third, [&](const Side& side) { return left_.contains(side) || taken_.contains(side); },
+            others_);
+        if (others_.empty()) return;
+        const auto is_taken = [&](const OrientedFacet& other) { return taken_.contains(other.side); };
+        const auto taken = std::ranges::count_if(others_, is_taken);
+        const bool is_ambiguous = others_.size() > 1;
         const std::size_t ends = std::size_t(umbrellas_[a]) + umbrellas_[b];
         if (taken > 1 || (is_ambiguous && ends == 0)) return;
         const std::size_t uncertainty = is_ambiguous ? 2 : ends == 2 ? 0 : 1;
@@ -198,19 +211,17 @@ private:
             queues_[uncertainty].push_back({facet, third});
             return;
         }
-        const std::optional<OrientedFacet> next =
-            taken > 0 ? continuation(tets_, taken_, facet, third) : continuation(tets_, left_, facet, third);
-        if (!next) return;
-        const u32 its_third = third_at(next->side, a, b);
+        const OrientedFacet next = taken > 0 ? *std::ranges::find_if(others_, is_taken) : others_.front();
+        const u32 its_third = third_at(next.side, a, b);
         if (taken > 0) {
-            if (is_settled(next->side, its_third) || !has_orientation(*next)) return;
+            if (is_settled(next.side, its_third) || !has_orientation(next)) return;
         } else {
-            take(*next);
+            take(next);
         }
         settle(facet.side, third);
-        settle(next->side, its_third);
-        for (const Side& side : others)
-            if (left_.contains(side)) left_.remove(tets_, side);
+        settle(next.side, its_third);
+        for (const OrientedFacet& other : others_)
+            if (left_.contains(other.side)) drop(other.side);
     }
 
     /// Removes taken facets at edges with more than two of them, where the others continue each other, and those at
@@ -223,11 +234,10 @@ private:
                 if (!owns_facet(tets_, cell, side.corner)) continue;
                 for (const u32 third : corners_of(tets_, side)) {
                     if (is_settled(side, third)) continue;
-                    std::size_t others = 0;
-                    for_each_facet_at(tets_, side, third, [&](const Side& facet) { others += taken_.contains(facet); });
                     const bool is_inner = (inner_[side.cell] >> side.corner & 1) != 0;
-                    const auto next = continuation(tets_, taken_, {side, is_inner}, third);
-                    if (others > 1 || (next && !has_orientation(*next))) {
+                    facets_seen(
+                        tets_, {side, is_inner}, third, [&](const Side& its) { return taken_.contains(its); }, others_);
+                    if (others_.size() > 1 || (others_.size() == 1 && !has_orientation(others_.front()))) {
                         surplus.push_back(side);
                         break;
                     }
@@ -258,7 +268,8 @@ private:
     /// at both ends, then those without such umbrellas, then those with more candidates. New edges enter the first
     /// queue.
     std::array<std::deque<OpenEdge>, 3> queues_;
-    std::vector<Side> others_;
+    std::size_t left_count_;
+    std::vector<OrientedFacet> others_;
 };
 
 void require_range(std::string_view name, const Angle& angle, double least, double most) {
@@ -287,10 +298,7 @@ SurfaceMesh::SurfaceMesh(const TetMesh& tets, const Surface& surface) {
 Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context) {
     const TetMesh& tets = diagram.tets;
     FacetSet chosen = candidates(diagram, sampling, params.lid_factor, context);
-    Surface surface{FacetSet(0), {}, 0};
-    for (u32 cell = 0; cell < tets.cells.size(); ++cell)
-        for (unsigned bits = chosen.of(cell); bits != 0; bits &= bits - 1)
-            surface.candidates += owns_facet(tets, cell, std::countr_zero(bits));
+    Surface surface{FacetSet(0), {}, count(tets, chosen)};
     const Array<u8> umbrellas = prune(diagram, chosen, params.prune_angle.in_radians(), context);
     SurfaceWalk walk(diagram, chosen, umbrellas, context);
     walk.run();

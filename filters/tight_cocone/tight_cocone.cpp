@@ -25,8 +25,8 @@ namespace {
 
 /// Above this share of the area, a surface that no point shows is worth a warning, and above the second one a doubt.
 constexpr double remarkable_share = 0.001, doubtful_share = 0.1;
-/// Above this share of unused points, a result is doubtful. Clean dense models leave none; models with grooves, noise and
-/// outliers leave more.
+/// Above this share of unused points, a result is doubtful. Clean dense models leave none; models with grooves, noise
+/// and outliers leave more.
 constexpr double doubtful_unused = 0.02;
 
 void require_noise(const TightCoconeParams& params) {
@@ -180,7 +180,8 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     result.unused = given.positions.size() - result.mesh.positions.size();
 
     warn_about(
-        result, given.positions.size(), params.noise != TightCoconeParams::Noise::none, [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); }, context);
+        result, given.positions.size(), params.noise != TightCoconeParams::Noise::none,
+        [&](u32 vertex) { return bool(is_invented[vertex_of[vertex]]); }, context);
     report(result, context);
     context.progress(1);
     return result;

@@ -55,8 +55,8 @@ struct TightCoconeResult {
 /// Cost: linear in the cells, and a search for 16 neighbours of each point; about 100 bytes per cell. The noise mode
 ///       adds a tetrahedralisation of the kept points.
 /// Metrics: see plugin.cpp. Warns of an area that no point shows. Doubts the result if that is more than a tenth of the
-/// surface, and if more than 2 % of the points are not used without the noise mode. Passes on doubts_about_surface() and
-/// doubts_about_handles().
+/// surface, and if more than 2 % of the points are not used without the noise mode. Passes on doubts_about_surface()
+/// and doubts_about_handles().
 TightCoconeResult tight_cocone(const TetMesh& tets, const TightCoconeParams& params, Context& context);
 
 }  // namespace scanmill
