@@ -68,7 +68,7 @@ struct ExactCircumsphere {
     /// Whether the distance from the exact centre is at most 1e-8 radii, plus the rounding of a sum of doubles for each
     /// coordinate.
     bool agrees_with(const Vec3& found) const {
-        // (a + b)² ≤ 2 a² + 2 b² would be looser than the promise, so each coordinate loses its rounding first.
+        if (!found.allFinite()) return false;
         RationalVector excess;
         for (std::size_t k = 0; k < 3; ++k) {
             const double coordinate = found[static_cast<int>(k)];
