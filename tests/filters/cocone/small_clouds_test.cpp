@@ -30,8 +30,8 @@ void expect_promised(const CoconeResult& result, std::size_t points) {
 TEST(Cocone, Octahedron_HasNoFlatPointButIsClosed) {
     // Every pole is the middle, 1 away. The edges of the Voronoi cell of (1, 0, 0) leave the middle in the directions
     // (1, ±1, ±1) and reach the tangent plane x = 1 at (1, ±1, ±1), √2 away. That is more than 1 / ratio for all
-    // ratios, so no point is flat. The middle lies behind the cocone and these rays end before it: all 8 triangles are
-    // candidates. Their edges are √2 long, less than 2.5 local spacings.
+    // ratios, so no point is flat. All these rays cross the tangent plane, so all 8 triangles are candidates. Their
+    // edges are √2 long, less than 2.5 local spacings.
     Context context;
     const CoconeResult result = cocone(
         tets_of(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})), {}, context);
@@ -55,8 +55,8 @@ TEST(Cocone, Octahedron_HasNoFlatPointButIsClosed) {
 }
 
 TEST(Cocone, Icosahedron_IsFlatWithinItsRatioAndNormalAngle) {
-    // Every pole is the middle, 1 away. The Voronoi cell reaches the tangent plane at tan 37.377° = 0.7639 = 1 / 1.3090,
-    // and the poles of neighbours differ by 63.43°.
+    // Every pole is the middle, 1 away. The Voronoi cell reaches the tangent plane at tan 37.377° = 0.7639, which is
+    // 1 / 1.3090, and the poles of neighbours differ by 63.43°.
     const PointCloud cloud = vertices_of(icosahedron());
     const auto with = [&](double normal_angle, double ratio) {
         CoconeParams params;
