@@ -10,7 +10,10 @@
 ///
 /// With Gaussian noise of 0.3, 0.5 and 1 spacings on a sphere or a torus, 73, 55 and 35 % of the points are kept. They
 /// lie 0.4, 0.65 and 1.05 standard deviations outside of the surface on average and scatter by 0.8, 0.73 and 0.66: the
-/// result is smoother, and too large by that much.
+/// result is smoother, and too large by that much. The spacing is here the least distance in a Poisson-disc sample of
+/// as many points, which is 0.76 times the square root of the area per point.
+///
+/// The scan must be complete: through a hole that is wider than the balls beside it, the outside enters the object.
 ///
 /// Source: Dey, Goswami 2004.
 
@@ -19,8 +22,9 @@
 
 namespace scanmill::cocones {
 
-/// Vertices, ascending. Throws Error if fewer than 1 % of the big cells are left inside: the walk has then entered the
-/// object. Pre: no weights; neighbours at least 1; factor above 0. Cost: linear, and a search for the neighbours.
+/// Vertices, ascending. Throws Error if no cell is big, and if fewer than 1 % of the big cells are left inside: the
+/// walk has then entered the object. Pre: no weights; neighbours at least 1; factor above 0. Cost: linear, and a search
+/// for the neighbours.
 Array<u32> outer_points(const TetMesh& tets, u32 neighbours, double factor, Context& context);
 
 /// The Delaunay tetrahedralisation of these vertices, with their columns.
