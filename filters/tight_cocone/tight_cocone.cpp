@@ -94,10 +94,9 @@ void warn_about(const TightCoconeResult& result, std::size_t points, bool drops_
                 const std::function<bool(u32)>& is_invented, Context& context) {
     const double share = result.invented_area / result.area;
     const std::string text = fmt::format(
-        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {} and sharp or sparse "
-        "places",
+        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {}sharp or sparse places",
         100 * share, result.invented_area, result.area, symbol(result.tets.frame.unit),
-        count_text(result.holes_filled, "hole", "holes"));
+        result.holes_filled > 0 ? count_text(result.holes_filled, "hole", "holes") + " and " : "");
     if (share > doubtful_share)
         context.doubt(text + "; check the result before using it");
     else if (share > remarkable_share)
