@@ -2,9 +2,11 @@
 // Shapes of known topology and volume, whole and with parts missing.
 
 #include <Eigen/Geometry>
+#include <array>
+#include <set>
 
 #include "filters/tight_cocone/cases.hpp"
-#include "support/thrown.hpp"
+#include "support/shapes.hpp"
 
 namespace scanmill {
 namespace {
@@ -20,12 +22,8 @@ TEST(TightCocone, Sphere_IsTheHullOfItsPoints) {
     EXPECT_EQ(result.mesh.triangles.size(), 2 * 2000u - 4);
     EXPECT_EQ(result.unused, 0u);
     EXPECT_EQ(result.poor, 0u);
-    double hull = 0;
-    for (const Tetrahedron& cell : result.tets.cells) {
-        const auto& p = result.tets.positions;
-        hull += (p[cell[1]] - p[cell[0]]).cross(p[cell[2]] - p[cell[0]]).dot(p[cell[3]] - p[cell[0]]) / 6;
-    }
-    EXPECT_NEAR(volume(result.mesh), hull, 1e-9);
+    EXPECT_EQ(std::ranges::count(result.tets.inside, u8(1)), static_cast<long>(result.tets.cells.size()));
+    EXPECT_NEAR(volume(result.mesh), inside_volume(result.tets), 1e-9);
     EXPECT_EQ(result.invented_area, 0);
 }
 
@@ -73,16 +71,66 @@ TEST(TightCocone, SphereInASphere_IsInsideTheSolid) {
     EXPECT_NEAR(volume(result.mesh), 32 * pi / 3, 0.3);
 }
 
+TEST(TightCocone, Octahedron_IsItsEightTriangles) {
+    // Its six points are on one sphere, so its four cells are a tie. Squares of edge sqrt(2) in the middle.
+    const TightCoconeResult result = closed_through(
+        cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}));
+    expect_promised(result, 6);
+    EXPECT_EQ(result.mesh.triangles.size(), 8u);
+    EXPECT_NEAR(volume(result.mesh), 4.0 / 3, 1e-12);
+    EXPECT_NEAR(result.area, 4 * std::sqrt(3.0), 1e-12);
+    EXPECT_EQ(result.good, 6u);
+    EXPECT_EQ(result.invented_area, 0);
+    // Each triangle is in one octant.
+    std::set<std::array<bool, 3>> octants;
+    for (const auto& [a, b, c] : result.mesh.triangles) {
+        const Vec3 sum = result.mesh.positions[a] + result.mesh.positions[b] + result.mesh.positions[c];
+        EXPECT_EQ(sum.cwiseAbs(), Vec3(1, 1, 1));
+        octants.insert({sum.x() > 0, sum.y() > 0, sum.z() > 0});
+    }
+    EXPECT_EQ(octants.size(), 8u);
+}
+
+TEST(TightCocone, Cube_IsItsTwelveTriangles) {
+    // Every four corners of a face are on one circle, and all eight on one sphere.
+    const TightCoconeResult result = closed_through(lattice_cube(1));
+    expect_promised(result, 8);
+    EXPECT_EQ(result.mesh.triangles.size(), 12u);
+    EXPECT_NEAR(volume(result.mesh), 1, 1e-12);
+    EXPECT_NEAR(result.area, 6, 1e-12);
+    EXPECT_EQ(result.unused, 0u);
+}
+
+TEST(TightCocone, DentedCube_HasADent) {
+    // The point a tenth below the middle of the top takes a pyramid of volume 0.1 / 3 away. Its four triangles have
+    // the height sqrt(0.5² + 0.1²).
+    const TightCoconeResult result = closed_through(joined(lattice_cube(1), cloud_of({Vec3(0.5, 0.5, 0.9)})));
+    expect_promised(result, 9);
+    EXPECT_EQ(result.mesh.triangles.size(), 14u);
+    EXPECT_NEAR(volume(result.mesh), 1 - 0.1 / 3, 1e-12);
+    EXPECT_NEAR(result.area, 5 + 2 * std::sqrt(0.26), 1e-12);
+}
+
+TEST(TightCocone, OneTetrahedron_IsItself) {
+    const TightCoconeResult result = closed_through(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+    expect_promised(result, 4);
+    EXPECT_EQ(result.mesh.triangles.size(), 4u);
+    EXPECT_NEAR(volume(result.mesh), 1.0 / 6, 1e-12);
+    EXPECT_NEAR(result.area, 1.5 + std::sqrt(3.0) / 2, 1e-12);
+}
+
+TEST(TightCocone, LatticeOfACubesSurface_IsTheCube) {
+    const TightCoconeResult result = closed_through(lattice_cube(8, 1, true));
+    expect_promised(result, 386);
+    EXPECT_EQ(result.mesh.triangles.size(), 768u);  // two for each of 6 × 8 × 8 squares
+    EXPECT_NEAR(volume(result.mesh), 512, 1e-9);
+    EXPECT_NEAR(result.area, 384, 1e-9);
+    EXPECT_EQ(result.invented_area, 0);
+}
+
 TEST(TightCocone, SumOfTheCells_IsTheVolumeOfTheMesh) {
     const TightCoconeResult result = closed_through(poisson_torus(0.1));
-    double cells = 0;
-    for (std::size_t c = 0; c < result.tets.cells.size(); ++c) {
-        const auto& p = result.tets.positions;
-        const Tetrahedron& cell = result.tets.cells[c];
-        if (result.tets.inside[c] == 1)
-            cells += (p[cell[1]] - p[cell[0]]).cross(p[cell[2]] - p[cell[0]]).dot(p[cell[3]] - p[cell[0]]) / 6;
-    }
-    EXPECT_NEAR(volume(result.mesh), cells, 1e-9);
+    EXPECT_NEAR(volume(result.mesh), inside_volume(result.tets), 1e-9);
 }
 
 }  // namespace
