@@ -120,6 +120,28 @@ TEST_F(RawScans, TenViewsOfTheBunny_GiveTheBunny_WithTheirNoise) {
     EXPECT_GT(metrics_of("out/merge-views.stl", merged, "thresholds=0.5 %diag").at("f-score").get<double>(), 0.94);
 }
 
+TEST_F(RawScans, TenViewsOfTheBunny_ThroughTightCocone_AreClosedWithDoubts_OrRefusedByItsNoiseMode) {
+    SCANMILL_REAL_SCAN(poses, shared_data, "1-bunny/raw/bun.conf");
+    std::vector<std::string> views;
+    for (const auto& file : fs::directory_iterator(poses.parent_path()))
+        if (file.path().extension() == ".ply") views.push_back(file.path().string());
+    ASSERT_NO_FATAL_FAILURE(merge_views(views, poses));
+    folder_.write("closed.yaml",
+                  "scanmill: 1\ninputs: {scan: points}\nparameters: {noise: {default: none}}\nsteps:\n  - voxel-thin: "
+                  "{bin-size: 0.5 %diag}\n  - delaunay:\n  - tight-cocone: {noise: $noise}\noutputs: {'{scan}.stl': "
+                  "tight-cocone.mesh}\n");
+    const json cell = cells_of("closed.yaml", {"merge-views.ply"}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "doubtful");
+    EXPECT_THAT(cell.at("doubts").dump(), HasSubstr("handles pass through parts that no point shows"));
+    EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("closed"), true);
+    EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("components"), 1);
+    // The noise mode needs a complete scan: the outside enters through the holes of the bunny's base.
+    const ProgramResult refused =
+        scanmill_program({"run", "closed.yaml", "merge-views.ply", "--set", "noise=big-balls", "-o", "out"}, options());
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("has entered the object"), HasSubstr("larger noise-factor")));
+}
+
 TEST_F(RawScans, TwelveViewsOfTheBuddha_GiveASurfaceThroughTheOtherThree_ButItSpansGaps) {
     SCANMILL_REAL_SCAN(poses, shared_data, "5-raw/happy_stand/happyStandRight.conf");
     std::vector<std::string> views, others;
