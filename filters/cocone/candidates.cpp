@@ -92,8 +92,8 @@ FacetSet candidates(const Diagram& diagram, const Sampling& sampling, double lid
                 bool any_flat = false, flat_agree = true, all_agree = true;
                 for (int j = 0; j < 4; ++j) {
                     if (j == i) continue;
-                    const bool agrees = (hits >> j & 1u) != 0;
-                    const bool is_flat = sampling.flat[tets.cells[cell][static_cast<std::size_t>(j)]] == 1;
+                    const u32 vertex = tets.cells[cell][static_cast<std::size_t>(j)];
+                    const bool agrees = (hits >> j & 1u) != 0, is_flat = sampling.flat[vertex] == 1;
                     any_flat |= is_flat;
                     flat_agree &= agrees || !is_flat;
                     all_agree &= agrees;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <utility>
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/parallel.hpp"
@@ -100,6 +101,9 @@ public:
           components_(tets_.positions.size()),
           outside_of_(tets_.positions.size(), Outside::unknown),
           is_out_(tets_.cells.size(), u8(0)) {
+        is_used_.assign(good_.size(), u8(0));
+        for (const Triangle& t : mesh.mesh.triangles)
+            for (u32 v : t) is_used_[v] = 1;
         for (const Triangle& t : mesh.mesh.triangles)
             for (std::size_t k = 0; k < 3; ++k)
                 if (good_[t[k]] == 1 && good_[t[(k + 1) % 3]] == 1) components_.unite(t[k], t[(k + 1) % 3]);
@@ -119,6 +123,7 @@ public:
             for (int corner = 0; corner < 4; ++corner)
                 if (const Side across = other_side(tets_, {queue_[i], corner}); across.is_cell()) enter(across);
         }
+        remove_components_without_good_points();
         Peeling result;
         result.labels.resize(is_out_.size());
         std::ranges::transform(is_out_, result.labels.begin(), [](u8 out) { return u8(out == 0); });
@@ -172,6 +177,25 @@ private:
             if (is_good(cell, k)) decide(cell, k, is_outer(cell, k));
     }
 
+    /// Components of cells that no good point supports are what the peel left of outliers.
+    void remove_components_without_good_points() {
+        Array<u8> seen = is_out_;
+        for (u32 seed = 0; seed < seen.size(); ++seed) {
+            if (seen[seed] == 1) continue;
+            seen[seed] = 1;
+            queue_.assign(1, seed);
+            bool has_good = false;
+            for (std::size_t i = 0; i < queue_.size(); ++i)
+                for (int corner = 0; corner < 4; ++corner) {
+                    has_good |= is_good(queue_[i], corner);
+                    const u32 across = tets_.neighbours[queue_[i]][static_cast<std::size_t>(corner)];
+                    if (across == TetMesh::outside_hull || std::exchange(seen[across], u8(1)) == 1) continue;
+                    queue_.push_back(across);
+                }
+            for (std::size_t i = 0; i < queue_.size() && !has_good; ++i) is_out_[queue_[i]] = 1;
+        }
+    }
+
     bool is_smallest_facet(const Side& side) const {
         std::array<double, 4> squared;
         for (int i = 0; i < 4; ++i) {
@@ -179,6 +203,9 @@ private:
             squared[static_cast<std::size_t>(i)] =
                 squared_circumradius(tets_.positions[a], tets_.positions[b], tets_.positions[c]);
         }
+        if (getenv("ISO"))
+            for (int k = 0; k < 4; ++k)
+                if (k != side.corner && is_used_[vertex(side.cell, k)] == 0) return false;
         return std::ranges::min_element(squared) - squared.begin() == side.corner;
     }
 
@@ -188,7 +215,7 @@ private:
     Array<u8> good_, outer_;
     DisjointSets components_;
     Array<Outside> outside_of_;  ///< at the root of each component
-    Array<u8> is_out_;
+    Array<u8> is_out_, is_used_;
     std::vector<u32> queue_;
 };
 

@@ -33,8 +33,8 @@ TEST(Cocone, Octahedron_HasNoFlatPointButIsClosed) {
     // ratios, so no point is flat. All these rays cross the tangent plane, so all 8 triangles are candidates. Their
     // edges are √2 long, less than 2.5 local spacings.
     Context context;
-    const CoconeResult result = cocone(
-        tets_of(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})), {}, context);
+    const CoconeResult result =
+        cocone(tets_of(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})), {}, context);
     expect_promised(result, 6);
     EXPECT_TRUE(topology(result.mesh).closed);
     EXPECT_EQ(result.mesh.triangles.size(), 8u);
@@ -84,8 +84,8 @@ TEST(Cocone, ATetrahedron_IsItsHull) {
 
 TEST(Cocone, APointInsideAFewOthers_IsUnused) {
     Context context;
-    const CoconeResult result = cocone(
-        tets_of(cloud_of({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, {0.01, 0.02, 0.03}})), {}, context);
+    const CoconeResult result =
+        cocone(tets_of(cloud_of({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, {0.01, 0.02, 0.03}})), {}, context);
     expect_promised(result, 5);
     EXPECT_EQ(result.unused, 1u);
     EXPECT_THAT(context.warnings(), testing::Contains(testing::HasSubstr("1 of 5 points is in no triangle")));

@@ -290,8 +290,8 @@ TEST(Poles, OfABall_AreTheFarthestCircumcentres) {
 TEST(Poles, EquallyFar_TheLowerCellCounts) {
     // The middle of a lattice of 27 points: all corners of its Voronoi cell are (±0.5, ±0.5, ±0.5) away.
     const Dual dual(lattice_cube(2));
-    const auto middle = static_cast<std::size_t>(std::ranges::find(dual.tets.positions, Vec3(1, 1, 1)) -
-                                                 dual.tets.positions.begin());
+    const auto middle =
+        static_cast<std::size_t>(std::ranges::find(dual.tets.positions, Vec3(1, 1, 1)) - dual.tets.positions.begin());
     ASSERT_LT(middle, dual.tets.positions.size());
     const u32 lowest = *std::ranges::min_element(dual.cells_at[middle]);
     EXPECT_LT((dual.poles.directions[middle] - (dual.centres[lowest] - Vec3(1, 1, 1)).normalized()).norm(), 1e-15);

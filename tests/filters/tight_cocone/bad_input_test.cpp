@@ -113,8 +113,8 @@ TEST(TightCoconeOfBadInput, PointsInABall_AreDoubtful) {
 
 TEST(TightCoconeOfBadInput, PointsInABallWithBigBalls_AreRefused) {
     // All large balls are connected to the outside.
-    const PointCloud ball = points_where(moved(random_cube(2000, 5), 2, Vec3(-1, -1, -1)),
-                                         [](const Vec3& p) { return p.norm() < 1; });
+    const PointCloud ball =
+        points_where(moved(random_cube(2000, 5), 2, Vec3(-1, -1, -1)), [](const Vec3& p) { return p.norm() < 1; });
     const Outcome outcome = outcome_of(ball, with_big_balls());
     ASSERT_TRUE(outcome.refusal);
     EXPECT_THAT(outcome.refusal->sentence(), AllOf(HasSubstr("noise-factor 1"), HasSubstr("large cells")));

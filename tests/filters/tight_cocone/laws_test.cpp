@@ -37,10 +37,12 @@ const std::vector<Case>& cases() {
         {"noisy torus with big balls", noisy(poisson_torus(0.1), 0.03), with_big_balls(), true},
         {"lattice", lattice_cube(6, 1, true), {}, true},
         {"block", l_block_surface(5, 1, 5, 1e-3), {}},
-        {"two spheres", joined(fibonacci_sphere(500, 1e-3), moved(fibonacci_sphere(300, 1e-3, 2), 0.5, Vec3(2, 1, 0))),
+        {"two spheres",
+         joined(fibonacci_sphere(500, 1e-3), moved(fibonacci_sphere(300, 1e-3, 2), 0.5, Vec3(2, 1, 0))),
          {},
          true},
-        {"ball", points_where(random_cube(500, 3), [](const Vec3& p) { return (p - Vec3(.5, .5, .5)).norm() < .5; }),
+        {"ball",
+         points_where(random_cube(500, 3), [](const Vec3& p) { return (p - Vec3(.5, .5, .5)).norm() < .5; }),
          {}}};
     return all;
 }

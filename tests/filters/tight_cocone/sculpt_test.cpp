@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// sculpt takes the cells of tight-cocone.
 
+#include "sculpt/sculpt.hpp"
 #include "filters/tight_cocone/cases.hpp"
 #include "scanmill/formats/files.hpp"
-#include "sculpt/sculpt.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill {

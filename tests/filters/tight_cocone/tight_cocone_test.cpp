@@ -73,8 +73,8 @@ TEST(TightCocone, SphereInASphere_IsInsideTheSolid) {
 
 TEST(TightCocone, Octahedron_IsItsEightTriangles) {
     // Its six points are on one sphere, so its four cells are a tie. Squares of edge sqrt(2) in the middle.
-    const TightCoconeResult result = closed_through(
-        cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}));
+    const TightCoconeResult result =
+        closed_through(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}));
     expect_promised(result, 6);
     EXPECT_EQ(result.mesh.triangles.size(), 8u);
     EXPECT_NEAR(volume(result.mesh), 4.0 / 3, 1e-12);

@@ -85,9 +85,8 @@ struct ExactCircumsphere {
 Vec3 naive_centre(const CellCorners& corners) {
     const auto [u, v, w] = spheres::offsets_from(corners[0], corners[1], corners[2], corners[3]);
     const auto vw = spheres::cross(v, w);
-    const auto numerator =
-        spheres::circumcentre_numerator(spheres::dot(u, u), spheres::dot(v, v), spheres::dot(w, w), vw,
-                                        spheres::cross(w, u), spheres::cross(u, v));
+    const auto numerator = spheres::circumcentre_numerator(spheres::dot(u, u), spheres::dot(v, v), spheres::dot(w, w),
+                                                           vw, spheres::cross(w, u), spheres::cross(u, v));
     return corners[0] + Vec3(numerator[0], numerator[1], numerator[2]) / (2 * spheres::dot(u, vw));
 }
 
@@ -192,8 +191,7 @@ TEST(Circumcentre, OfAllCells_AreThoseOfEachCell) {
     Array<Vec3> positions(50);
     for (Vec3& p : positions) p = uniform_in_cube(random);
     Array<Tetrahedron> cells(40'000);
-    for (Tetrahedron& cell : cells)
-        do {
+    for (Tetrahedron& cell : cells) do {
             for (u32& corner : cell) corner = static_cast<u32>(random.index(positions.size()));
             std::ranges::sort(cell);
         } while (std::ranges::adjacent_find(cell) != cell.end());

@@ -15,8 +15,7 @@ namespace {
 TetMesh tets_of_random_corners(std::size_t vertices, std::size_t cells, u64 seed) {
     Random random(seed);
     Array<Tetrahedron> all(cells);
-    for (Tetrahedron& cell : all)
-        do {
+    for (Tetrahedron& cell : all) do {
             for (u32& corner : cell) corner = static_cast<u32>(random.index(vertices)) & ~u32(1);
         } while (cell[0] == cell[1] || cell[0] == cell[2] || cell[0] == cell[3] || cell[1] == cell[2] ||
                  cell[1] == cell[3] || cell[2] == cell[3]);
