@@ -177,8 +177,9 @@ private:
             if (is_good(cell, k)) decide(cell, k, is_outer(cell, k));
     }
 
-    /// Components of cells that no good point supports are what the peel left of outliers.
+    /// Components of cells that no good point supports are what the peel left of outliers, unless no point is good.
     void remove_components_without_good_points() {
+        if (std::ranges::count(good_, u8(1)) == 0) return;
         Array<u8> seen = is_out_;
         for (u32 seed = 0; seed < seen.size(); ++seed) {
             if (seen[seed] == 1) continue;

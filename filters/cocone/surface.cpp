@@ -47,8 +47,8 @@ public:
           settled_(tets_.cells.size(), std::uint16_t(0)),
           left_count_(count(tets_, left)) {}
 
-    /// Walks over every component of the candidates that has a vertex with an umbrella, and flat points enough. What a
-    /// walk does not reach is a component in the next round.
+    /// Walks over every component of the candidates that has a vertex with an umbrella. If one of them has flat points
+    /// enough, those without are left out. What a walk does not reach is a component in the next round.
     void run() {
         while (left_count_ > 0) {
             const std::vector<OrientedFacet> seeds = outermost_facets();
@@ -88,10 +88,14 @@ private:
             its.umbrellas += umbrellas_[vertex];
             its.flat += flat_[vertex];
         }
+        const auto is_sampled = [](const Component& its) {
+            return its.umbrellas > 0 && its.flat >= least_flat * its.vertices;
+        };
+        any_sampled_ |=
+            std::ranges::any_of(components, [&](const Component& its) { return its.vertices > 0 && is_sampled(its); });
         std::vector<OrientedFacet> seeds;
         for (const Component& its : components)
-            if (its.umbrellas > 0 && its.flat >= least_flat * its.vertices)
-                seeds.push_back(seen_from_below(its.lowest));
+            if (any_sampled_ ? is_sampled(its) : its.umbrellas > 0) seeds.push_back(seen_from_below(its.lowest));
         return seeds;
     }
 
@@ -281,6 +285,7 @@ private:
     /// queue.
     std::array<std::deque<OpenEdge>, 3> queues_;
     std::size_t left_count_;
+    bool any_sampled_ = false;  ///< whether a component has flat points enough
     std::vector<OrientedFacet> others_;
 };
 
