@@ -53,8 +53,10 @@ void report_gaps(const CoconeResult& result, std::size_t points, Context& contex
 
 }  // namespace
 
-CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& context) {
-    require_usable(tets, params);
+CoconeResult cocone(const TetMesh& given, const CoconeParams& params, Context& context) {
+    require_usable(given, params);
+    const SpatialTets spatial = in_spatial_order(given, context.threads());
+    const TetMesh& tets = spatial.tets;
     const Diagram diagram(tets, params.cone_angle.in_radians(), context);
     context.progress(0.3);
     const Sampling samples = sampling(diagram, params, context);
@@ -67,7 +69,12 @@ CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& co
     context.progress(0.9);
     face_outwards(result.mesh, context);
     const Array<Vec3> outward = outward_directions(tets.positions.span(), result.mesh.triangles.span());
-    result.mesh.vertex_columns = with_sampling(tets, diagram, samples, outward, context);
+    Array<Triangle> triangles(result.mesh.triangles.begin(), result.mesh.triangles.end());
+    for (Triangle& triangle : triangles)
+        for (u32& vertex : triangle) vertex = spatial.vertices[vertex];
+    result.mesh.positions = given.positions;
+    result.mesh.triangles = std::move(triangles);
+    result.mesh.vertex_columns = with_sampling(given.vertex_columns, spatial, diagram, samples, outward, context);
     result.mesh = without_unused_vertices(result.mesh);
     result.unused = tets.positions.size() - result.mesh.positions.size();
     result.boundary_points = samples.boundary_points;

@@ -348,30 +348,34 @@ void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& 
             "'tight-cocone: {noise: big-balls}', or take 'alpha-solid'");
 }
 
-ColumnTable with_sampling(const TetMesh& tets, const Diagram& diagram, const Sampling& sampling,
-                          std::span<const Vec3> outward, Context& context) {
+ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, const Diagram& diagram,
+                          const Sampling& sampling, std::span<const Vec3> outward, Context& context) {
     constexpr std::array<std::string_view, 3> names{"pole-normal", "flat", "boundary"};
     ColumnTable result;
-    for (const Column& column : tets.vertex_columns) {
+    for (const Column& column : given) {
         if (std::ranges::find(names, column.name()) == names.end()) {
             result.add(column);
             continue;
         }
         std::string name = column.name();
-        while (tets.vertex_columns.find(name)) name += "-of-points";
+        while (given.find(name)) name += "-of-points";
         context.warn(fmt::format("the points already have a column '{}'; it was renamed '{}'", column.name(), name));
         result.add(column.renamed(name));
     }
-    const std::size_t count = tets.positions.size();
+    const std::size_t count = spatial.vertices.size();
     Array<double> normals(3 * count);
+    Array<u8> flat(count), boundary(count);
     for (std::size_t vertex = 0; vertex < count; ++vertex) {
+        const std::size_t row = spatial.vertices[vertex];
         const Vec3& pole = diagram.poles.directions[vertex];
         const double sign = outward[vertex].dot(pole) < 0 ? -1 : 1;
-        for (int k = 0; k < 3; ++k) normals[3 * vertex + static_cast<std::size_t>(k)] = sign * pole[k];
+        for (int k = 0; k < 3; ++k) normals[3 * row + static_cast<std::size_t>(k)] = sign * pole[k];
+        flat[row] = sampling.flat[vertex];
+        boundary[row] = sampling.boundary[vertex];
     }
     result.add(Column("pole-normal", 3, Buffer<double>(std::move(normals))));
-    result.add(Column("flat", 1, Buffer<u8>(Array<u8>(sampling.flat))));
-    result.add(Column("boundary", 1, Buffer<u8>(Array<u8>(sampling.boundary))));
+    result.add(Column("flat", 1, Buffer<u8>(std::move(flat))));
+    result.add(Column("boundary", 1, Buffer<u8>(std::move(boundary))));
     return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "cocone/facets.hpp"
 #include "cocone/sampling.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 
 namespace scanmill::cocones {
 
@@ -34,10 +35,10 @@ void require_usable(const TetMesh& tets, const CoconeParams& params);
 [[noreturn]] void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface,
                                const std::string& reason);
 
-/// The vertex columns `pole-normal`, `flat` and `boundary` after those of the points; older columns of these names are
-/// renamed, with a warning. Pole normals get the direction of `outward` where that is not zero.
-ColumnTable with_sampling(const TetMesh& tets, const Diagram& diagram, const Sampling& sampling,
-                          std::span<const Vec3> outward, Context& context);
+/// The vertex columns `pole-normal`, `flat` and `boundary` after the given ones, by given vertex. Given columns of
+/// these names are renamed, with a warning. Pole normals get the direction of `outward` where that is not zero.
+ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, const Diagram& diagram,
+                          const Sampling& sampling, std::span<const Vec3> outward, Context& context);
 
 /// Sums of the area vectors of the triangles at each vertex.
 Array<Vec3> outward_directions(std::span<const Vec3> positions, std::span<const Triangle> triangles);

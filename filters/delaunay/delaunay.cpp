@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "delaunay/canonical_cells.hpp"
 #include "delaunay/flatness.hpp"
 #include "delaunay/point_weights.hpp"
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {

@@ -25,9 +25,9 @@
 #include <utility>
 #include <vector>
 
-#include "delaunay/canonical_cells.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 
 namespace scanmill {
 

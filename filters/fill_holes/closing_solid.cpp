@@ -13,11 +13,11 @@
 #include <tuple>
 #include <utility>
 
-#include "delaunay/canonical_cells.hpp"
 #include "delaunay/flatness.hpp"
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 #include "scanmill/geometry/tets/edge_walk.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "scanmill/geometry/tets/vertex_stars.hpp"

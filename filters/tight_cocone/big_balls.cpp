@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delaunay/canonical_cells.hpp"
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/point_tree.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 #include "scanmill/geometry/tets/circumspheres.hpp"
 #include "scanmill/geometry/tets/voronoi.hpp"
 

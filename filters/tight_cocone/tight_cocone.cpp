@@ -71,10 +71,12 @@ std::size_t spanned_loops(const SurfaceMesh& open, std::span<const Triangle> clo
     }));
 }
 
-/// Sums the area of the boundary, and of its facets that are not in the surface. Returns the vertices of the latter.
-std::vector<bool> measure_invented(const TetMesh& tets, const Surface& surface, TightCoconeResult& result) {
+/// Sums the area of the boundary, and of its facets that are not in the surface. Returns the given vertices of the
+/// latter.
+std::vector<bool> measure_invented(const SpatialTets& spatial, const Surface& surface, std::span<const u8> labels,
+                                   TightCoconeResult& result) {
+    const TetMesh& tets = spatial.tets;
     std::vector<bool> is_invented(tets.positions.size());
-    const std::span<const u8> labels = result.tets.inside.span();
     for (u32 cell = 0; cell < labels.size(); ++cell)
         for (int i = 0; i < 4 && labels[cell] == 1; ++i) {
             const u32 across = tets.neighbours[cell][static_cast<std::size_t>(i)];
@@ -84,7 +86,7 @@ std::vector<bool> measure_invented(const TetMesh& tets, const Surface& surface, 
             result.area += area;
             if (surface.facets.contains(cell, i)) continue;
             result.invented_area += area;
-            for (const u32 vertex : corners) is_invented[vertex] = true;
+            for (const u32 vertex : corners) is_invented[spatial.vertices[vertex]] = true;
         }
     return is_invented;
 }
@@ -113,6 +115,8 @@ void warn_about(const TightCoconeResult& result, std::size_t points, bool drops_
     else if (result.unused > 0)
         context.warn(left_out);
     for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt), "mesh");
+    // Handles through good points alone are shown by the sample.
+    if (result.poor == 0) return;
     for (std::string& doubt : doubts_about_handles(result.mesh, context, is_invented))
         context.doubt(std::move(doubt), "mesh");
 }
@@ -142,7 +146,9 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     if (params.noise == TightCoconeParams::Noise::big_balls)
         result.tets =
             tets_of(given, outer_points(given, params.noise_neighbours, params.noise_factor, context), context);
-    const TetMesh& tets = result.tets;
+    const SpatialTets spatial = in_spatial_order(result.tets, context.threads());
+    const TetMesh& tets = spatial.tets;
+    context.progress(0.1);
     const Diagram diagram(tets, params.cone_angle.in_radians(), context);
     context.progress(0.3);
     const Sampling samples = sampling(diagram, params, context);
@@ -150,23 +156,29 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     Surface surface = surface_of(diagram, samples, params, context);
     context.progress(0.7);
     auto [peeling, open] = close_by_solid(diagram, samples, params, surface, context);
+    Array<u8>& labels = peeling.labels;
     result.good = peeling.good;
     result.poor = tets.positions.size() - peeling.good;
     result.boundary_points = samples.boundary_points;
     result.removed_blobs = peeling.enclosed;
-    if (std::ranges::count(peeling.labels, u8(1)) == 0)
+    if (std::ranges::count(labels, u8(1)) == 0)
         refuse_empty(tets, samples, surface,
                      fmt::format("; {} points are good and {} poor, and the outside spreads everywhere", result.good,
                                  result.poor));
     context.progress(0.85);
-    result.mended_vertices = mend(diagram, peeling.labels, context);
-    Array<Triangle> boundary = boundary_triangles(tets, peeling.labels, context.threads());
-    result.holes_filled = spanned_loops(open, boundary);
-    const Array<Vec3> outward = outward_directions(tets.positions.span(), boundary);
-    ColumnTable columns = with_sampling(tets, diagram, samples, outward, context);
-    result.tets.inside = std::move(peeling.labels);
-    result.tets.vertex_columns = std::move(columns);
-    const std::vector<bool> is_invented = measure_invented(tets, surface, result);
+    result.mended_vertices = mend(diagram, labels, context);
+    const std::vector<bool> is_invented = measure_invented(spatial, surface, labels, result);
+    {
+        const Array<Triangle> boundary = boundary_triangles(tets, labels, context.threads());
+        result.holes_filled = spanned_loops(open, boundary);
+        const Array<Vec3> outward = outward_directions(tets.positions.span(), boundary);
+        result.tets.vertex_columns =
+            with_sampling(result.tets.vertex_columns, spatial, diagram, samples, outward, context);
+    }
+    Array<u8> inside(labels.size());
+    for (std::size_t cell = 0; cell < inside.size(); ++cell) inside[cell] = labels[spatial.cells[cell]];
+    Array<Triangle> boundary = boundary_triangles(result.tets, inside, context.threads());
+    result.tets.inside = std::move(inside);
     std::vector<u32> vertex_of;  // by vertex of the mesh, its vertex in the tetrahedralisation
     {
         std::vector<bool> is_used(tets.positions.size());
@@ -175,7 +187,7 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
         for (u32 vertex = 0; vertex < is_used.size(); ++vertex)
             if (is_used[vertex]) vertex_of.push_back(vertex);
     }
-    result.mesh = boundary_mesh(tets, std::move(boundary));
+    result.mesh = boundary_mesh(result.tets, std::move(boundary));
     result.unused = given.positions.size() - result.mesh.positions.size();
 
     warn_about(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Puts cells into the canonical order of tets.hpp, so that equal triangulations have equal bytes.
+/// Puts cells into the canonical order of tets.hpp, so that equal triangulations have equal bytes; and numbers vertices
+/// and cells anew along a space-filling curve.
 
 #include <algorithm>
 #include <array>
@@ -23,6 +24,7 @@ inline std::array<int, 4> canonical_corners(const Tetrahedron& cell) {
 struct CanonicalCells {
     Array<Tetrahedron> cells;
     Array<std::array<u32, 4>> neighbours;
+    Array<u32> number;  ///< by cell of the input, its number in the result
 };
 
 /// Sorts the cells and renumbers their neighbours. Pre: corners are below `vertices`, and in canonical order in each
@@ -30,5 +32,17 @@ struct CanonicalCells {
 /// Cost: linear, except for sorting the few cells that begin with the same vertex; 24 bytes per cell beside the result.
 CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<std::array<u32, 4>> neighbours, std::size_t vertices,
                                unsigned threads);
+
+/// A tetrahedralisation whose vertices are numbered along a space-filling curve (see spatial_order.hpp) and whose cells
+/// are in canonical order then. Cells and vertices with near numbers are near each other, so walks read near memory.
+/// The numbers do not depend on the order of the given vertices, unless several lie in one of the curve's steps.
+struct SpatialTets {
+    TetMesh tets;  ///< without columns, weights and labels
+    Array<u32> vertices;  ///< by vertex of `tets`, the given vertex
+    Array<u32> cells;  ///< by given cell, its number in `tets`
+};
+
+/// Cost: linear; 24 bytes per cell beside the result.
+SpatialTets in_spatial_order(const TetMesh& tets, unsigned threads);
 
 }  // namespace scanmill

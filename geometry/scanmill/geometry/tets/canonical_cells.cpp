@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "delaunay/canonical_cells.hpp"
+#include "scanmill/geometry/tets/canonical_cells.hpp"
 
 #include <algorithm>
 #include <atomic>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
 
 namespace scanmill {
 
@@ -41,7 +42,7 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
     });
 
     // Filling has moved every start to that of the next bucket: bucket v is now [next[v - 1], next[v]).
-    CanonicalCells result{std::move(cells), {}};
+    CanonicalCells result{std::move(cells), {}, {}};
     Array<u32> new_number(sorted.size());
     for_each_chunk(threads, vertices, chunk / 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
@@ -67,6 +68,41 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
             result.neighbours[new_number[c]] = across;
         }
     });
+    result.number = std::move(new_number);
+    return result;
+}
+
+SpatialTets in_spatial_order(const TetMesh& tets, unsigned threads) {
+    SpatialTets result;
+    result.vertices = spatial_order(tets.positions.span());
+    const std::size_t count = result.vertices.size();
+    Array<u32> number(count);
+    Array<Vec3> positions(count);
+    for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            number[result.vertices[v]] = static_cast<u32>(v);
+            positions[v] = tets.positions[result.vertices[v]];
+        }
+    });
+    Array<Tetrahedron> cells(tets.cells.size());
+    Array<Row> neighbours(cells.size());
+    for_each_chunk(threads, cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            Tetrahedron renumbered;
+            for (std::size_t i = 0; i < 4; ++i) renumbered[i] = number[tets.cells[c][i]];
+            const std::array<int, 4> order = canonical_corners(renumbered);
+            for (std::size_t i = 0; i < 4; ++i) {
+                cells[c][i] = renumbered[static_cast<std::size_t>(order[i])];
+                neighbours[c][i] = tets.neighbours[c][static_cast<std::size_t>(order[i])];
+            }
+        }
+    });
+    CanonicalCells canonical = canonical_cells(std::move(cells), std::move(neighbours), count, threads);
+    result.tets.frame = tets.frame;
+    result.tets.positions = std::move(positions);
+    result.tets.cells = std::move(canonical.cells);
+    result.tets.neighbours = std::move(canonical.neighbours);
+    result.cells = std::move(canonical.number);
     return result;
 }
 
