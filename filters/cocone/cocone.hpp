@@ -12,16 +12,14 @@
 ///    nearest neighbours, seen in the tangent plane, leave a gap wider than `gap_angle`: the test with poles alone
 ///    finds a third of a gently curved rim.
 /// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, or of all corners
-/// if
-///    none is flat. Triangles between boundary points alone with an edge longer than `lid_factor` local spacings span
-///    an opening and are no candidates. The local spacing is the mean distance to the six nearest neighbours.
+///    if none is flat. Triangles between boundary points alone with an edge longer than `lid_factor` local spacings
+///    span an opening and are no candidates. The local spacing is the mean distance to the six nearest neighbours.
 /// 3. Where the candidates at a point contain a closed fan, those outside of it are removed.
 /// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the
-/// others.
-///    It crosses edges with one choice first.
-/// 5. The solid behind the surface (see peeling.hpp) decides its outer side. Gaps that are closed by facets of the
-/// solid
-///    of which none spans an opening are closed.
+///    others. It crosses edges with one choice first. Components with few flat points are what outliers make among
+///    themselves; they are left out, unless all are like that.
+/// 5. The solid behind the surface (see peeling.hpp) decides its outer side. Gaps are closed where the solid closes
+///    them by facets of which none spans an opening.
 ///
 /// Source: Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001 for the boundary points; Woo, Dey 2005, section 2. The test
 /// for gaps, the one for spanning triangles, the vote where no corner is flat, the order of the walk and step 5 are our
@@ -70,7 +68,8 @@ struct CoconeResult {
 /// Pre:  a tetrahedralisation made by delaunay() without weights; parameters in their ranges. Throws Error otherwise,
 ///       and if there is no triangle.
 /// Post: see CoconeResult. Closed components face outwards, and cavities inwards. An open component faces away from the
-///       solid behind it. The bytes do not depend on the number of threads.
+///       solid behind it. The bytes do not depend on the number of threads. The
+///       surface does not depend on the order of the points, unless several lie within a 2^-21 of the cloud's extent.
 /// Ties: a direction exactly on a limit of a cocone is inside.
 /// Cost: linear in the cells, and a search for 16 neighbours of each point; about 90 bytes per cell.
 /// Metrics: see plugin.cpp. Warns of unused points. Doubts the result if they are more than 2 %, and if it has more

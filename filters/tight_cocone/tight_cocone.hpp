@@ -49,7 +49,8 @@ struct TightCoconeResult {
 /// walk
 ///       has entered the object.
 /// Post: see TightCoconeResult. The boundary is a closed 2-manifold, oriented outwards, through a subset of the points.
-///       It has no cavities. The bytes do not depend on the number of threads.
+///       It has no cavities. The bytes do not depend on the number of threads. The surface does not depend on the order of the
+///       points, unless several lie within a 2^-21 of the cloud's extent.
 /// Ties: a cell whose good points disagree is inside. Of equally small facets, the one opposite to the first corner
 ///       counts.
 /// Cost: linear in the cells, and a search for 16 neighbours of each point; about 100 bytes per cell. The noise mode

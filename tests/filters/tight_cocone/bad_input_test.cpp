@@ -103,8 +103,12 @@ void expect_doubtful_or_refused(const Outcome& outcome, std::size_t points) {
     const bool is_invented = outcome.result->invented_area > 0.1 * outcome.result->area;
     const bool leaves_points = 50 * outcome.result->unused > points;
     EXPECT_TRUE(is_invented || leaves_points);
-    if (is_invented) EXPECT_THAT(outcome.doubts, Contains(HasSubstr("% of the area")));
-    if (leaves_points) EXPECT_THAT(outcome.doubts, Contains(HasSubstr("points are not on the surface")));
+    if (is_invented) {
+        EXPECT_THAT(outcome.doubts, Contains(HasSubstr("% of the area")));
+    }
+    if (leaves_points) {
+        EXPECT_THAT(outcome.doubts, Contains(HasSubstr("points are not on the surface")));
+    }
 }
 
 TEST(TightCoconeOfBadInput, PointsInABall_AreDoubtful) {

@@ -124,7 +124,6 @@ TEST_P(TightCoconeLaws, PoleNormals_AreUnitVectorsThatFaceOutwards) {
 }
 
 TEST_P(TightCoconeLaws, PointsInAnyOrder_GiveTheSameSurface) {
-    if (!given.is_clear) return;  // where there is a choice, the walk over the candidates decides by the points' order
     const TightCoconeResult first = closed_through(given.cloud, given.params);
     for (const std::uint64_t seed : {7, 8, 9}) {
         const TightCoconeResult other = closed_through(shuffled(given.cloud, seed), given.params);
