@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cocone/candidates.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <numeric>
@@ -25,13 +25,13 @@ struct FanFacet {
     bool alive = true;
 };
 
-/// Whether some of the facets form a closed fan in which neighbours continue each other. Removes facets without a
-/// continuation at one of their two edges until there is none; what remains contains such a fan.
+/// Whether some of the facets are such that each is continued by another one at both its edges. Removes facets without
+/// a continuation at one of their two edges until there is none.
 bool has_closed_fan(std::vector<FanFacet>& facets, double least_cosine) {
     const auto continues = [&](const FanFacet& facet, std::size_t end) {
         return std::ranges::any_of(facets, [&](const FanFacet& other) {
             if (!other.alive || &other == &facet) return false;
-            // Of two facets with one orientation, one has their common edge first and the other has it second.
+            // If two facets have one orientation, one has their common edge first and the other has it second.
             if (other.ends[1 - end] == facet.ends[end]) return other.normal.dot(facet.normal) >= least_cosine;
             return other.ends[end] == facet.ends[end] && -other.normal.dot(facet.normal) >= least_cosine;
         });

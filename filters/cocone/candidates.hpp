@@ -14,11 +14,11 @@ bool spans_opening(const TetMesh& tets, const Sampling& sampling, double lid_fac
 /// The facets that the flat corners vote for, without those that span an opening: step 2 of cocone.hpp.
 FacetSet candidates(const Diagram& diagram, const Sampling& sampling, double lid_factor, Context& context);
 
-/// Removes dangling facets until there is none. A vertex owns an umbrella if some facets at it form a closed fan in
-/// which neighbours continue each other: the cosine between their normals, oriented across their common edge, is at
-/// least that of prune_angle. A facet dangles if a corner of it owns an umbrella, and the facet does not belong to such
-/// a fan. In each round, all facets that dangle are removed, so the result does not depend on the order. Returns
-/// whether each vertex owns an umbrella.
+/// Removes dangling facets until there is none. A vertex owns an umbrella if some facets at it are such that each is
+/// continued by another one at both its edges, as in a closed fan: the cosine between their normals, oriented across
+/// their common edge, is at least that of prune_angle. A facet dangles if a corner of it owns an umbrella, and the
+/// facet is not among them. In each round, all facets that dangle are removed, so the result does not depend on the
+/// order. Returns whether each vertex owns an umbrella.
 Array<u8> prune(const Diagram& diagram, FacetSet& set, double prune_angle, Context& context);
 
 }  // namespace scanmill::cocones

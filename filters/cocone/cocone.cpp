@@ -9,6 +9,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/distance/sides.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
@@ -28,6 +29,7 @@ std::size_t short_loops(const CoconeResult& result) {
     const double limit = short_loop * edge_spacing(result.mesh);
     const FeatureGraph& graph = result.features;
     return static_cast<std::size_t>(std::ranges::count_if(graph.polylines, [&](const FeaturePolyline& loop) {
+        if (!loop.closed) return false;
         double length = 0;
         for (u32 i = loop.begin; i < loop.end; ++i) {
             const u32 next = i + 1 < loop.end ? i + 1 : loop.begin;
@@ -40,9 +42,10 @@ std::size_t short_loops(const CoconeResult& result) {
 void report_gaps(const CoconeResult& result, std::size_t points, Context& context) {
     const std::size_t gaps = short_loops(result);
     if (gaps > few_short_loops && gaps * vertices_per_short_loop > result.mesh.positions.size())
-        context.doubt(fmt::format(
-            "the surface has {} gaps of less than {} median edges round: the scan is too noisy or too sparse there",
-            gaps, short_loop));
+        context.doubt(
+            fmt::format("the surface has {} gaps with a boundary shorter than {} median edges: the scan is too noisy "
+                        "or too sparse there",
+                        gaps, short_loop));
     const std::string text =
         fmt::format("{} of {} points {} in no triangle", result.unused, points, by_count(result.unused, "is", "are"));
     if (points_per_unused * result.unused > points)
@@ -55,7 +58,7 @@ void report_gaps(const CoconeResult& result, std::size_t points, Context& contex
 
 CoconeResult cocone(const TetMesh& given, const CoconeParams& params, Context& context) {
     require_usable(given, params);
-    const SpatialTets spatial = in_spatial_order(given, context.threads());
+    const SpatialTets spatial = in_spatial_order(given, context);
     const TetMesh& tets = spatial.tets;
     const Diagram diagram(tets, params.cone_angle.in_radians(), context);
     context.progress(0.3);
@@ -68,13 +71,13 @@ CoconeResult cocone(const TetMesh& given, const CoconeParams& params, Context& c
     if (result.mesh.triangles.empty()) refuse_empty(tets, samples, surface, "");
     context.progress(0.9);
     face_outwards(result.mesh, context);
-    const Array<Vec3> outward = outward_directions(tets.positions.span(), result.mesh.triangles.span());
     Array<Triangle> triangles(result.mesh.triangles.begin(), result.mesh.triangles.end());
     for (Triangle& triangle : triangles)
         for (u32& vertex : triangle) vertex = spatial.vertices[vertex];
     result.mesh.positions = given.positions;
     result.mesh.triangles = std::move(triangles);
-    result.mesh.vertex_columns = with_sampling(given.vertex_columns, spatial, diagram, samples, outward, context);
+    result.mesh.vertex_columns =
+        with_sampling(given.vertex_columns, spatial, diagram, samples, vertex_area_vectors(result.mesh), context);
     result.mesh = without_unused_vertices(result.mesh);
     result.unused = tets.positions.size() - result.mesh.positions.size();
     result.boundary_points = samples.boundary_points;

@@ -14,18 +14,18 @@
 /// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, or of all corners
 ///    if none is flat. Triangles between boundary points alone with an edge longer than `lid_factor` local spacings
 ///    span an opening and are no candidates. The local spacing is the mean distance to the six nearest neighbours.
-/// 3. Where the candidates at a point contain a closed fan, those outside of it are removed.
+/// 3. A point owns an umbrella if candidates at it form a closed fan. Candidates at it outside of such fans are
+/// removed.
 /// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the
-///    others. It crosses edges with one choice first. Components with few flat points are what outliers make among
-///    themselves; they are left out, unless all are like that.
+///    others. It crosses edges with one choice first, and stops at edges with several if no end owns an umbrella.
+///    Triangles at edges that stay unclear are removed. Components without an umbrella are left out, and those with few
+///    flat points, which outliers make among themselves, unless all are like that.
 /// 5. The solid behind the surface (see peeling.hpp) decides its outer side. Gaps are closed where the solid closes
 ///    them by facets of which none spans an opening.
 ///
-/// Source: Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001 for the boundary points; Woo, Dey 2005, section 2. The test
-/// for gaps, the one for spanning triangles, the vote where no corner is flat, the order of the walk and step 5 are our
-/// own.
-
-#include <optional>
+/// Source: Amenta, Choi, Dey, Leekha 2000; Dey, Giesen 2001 for the boundary points; Woo, Dey 2005, section 2. The
+/// tests for gaps and for spanning triangles, the vote where no corner is flat, the removal in step 3, the order of the
+/// walk, the rule for outliers and step 5 are our own, and so are the ranges of the parameters.
 
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -38,7 +38,7 @@ namespace scanmill {
 struct CoconeParams {
     /// The cocone's half-opening about the tangent plane; 5 to 40 degrees.
     Angle cone_angle = Angle::degrees(22.5);
-    /// The least angle between the outer sides of two triangles that do not continue each other; 90 to 170 degrees.
+    /// The largest angle between the normals of two triangles that continue each other; 90 to 170 degrees.
     Angle prune_angle = Angle::degrees(120);
     /// 10 to 90 degrees.
     Angle normal_angle = Angle::degrees(60);
@@ -71,8 +71,8 @@ struct CoconeResult {
 ///       solid behind it. The bytes do not depend on the number of threads. The
 ///       surface does not depend on the order of the points, unless several lie within a 2^-21 of the cloud's extent.
 /// Ties: a direction exactly on a limit of a cocone is inside.
-/// Cost: linear in the cells, and a search for 16 neighbours of each point; about 90 bytes per cell.
-/// Metrics: see plugin.cpp. Warns of unused points. Doubts the result if they are more than 2 %, and if it has more
+/// Cost: linear in the cells, and a search for 16 neighbours of each point; about 120 bytes per cell.
+/// Metrics: see plugin.cpp. Warns of unused points. Doubts the result if they are more than 2 %, or if it has more
 /// than three short loops and more than one per 1,000 vertices; a loop is short below 12 median edges.
 CoconeResult cocone(const TetMesh& tets, const CoconeParams& params, Context& context);
 

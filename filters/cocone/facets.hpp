@@ -17,7 +17,6 @@ struct Side {
     int corner = 0;
 
     bool is_cell() const { return cell != TetMesh::outside_hull; }
-    bool operator==(const Side&) const = default;
 };
 
 /// The same facet, seen from its other cell; at the hull, is_cell() is false. Pre: side.is_cell().
@@ -92,8 +91,6 @@ void for_each_facet_at(const TetMesh& tets, const Side& side, u32 third, const V
 struct OrientedFacet {
     Side side;
     bool inner;
-
-    bool operator==(const OrientedFacet&) const = default;
 };
 
 /// The other facets of the set at an edge of an oriented facet, in the order in which they are seen from its outer

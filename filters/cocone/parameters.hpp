@@ -15,7 +15,7 @@ void declare_parameters(Declare<Params>& declaration) {
     };
     declaration
         .param("cone-angle", field(&CoconeParams::cone_angle),
-               "Half-opening of a point's cocone about the tangent plane. A wider one has more candidates.",
+               "Half-opening of a point's cocone about the tangent plane. A wider one admits more candidates.",
                at_least(5), at_most(40))
         .param("prune-angle", field(&CoconeParams::prune_angle),
                "Triangles that meet with a larger angle between their normals do not continue each other.",

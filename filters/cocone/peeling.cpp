@@ -21,7 +21,7 @@ constexpr std::size_t chunk = 1 << 12;
 constexpr double folded_cosine = -0.9;
 
 /// By vertex: whether it is good, see peel().
-Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span<const u8> flat) {
+Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span<const u8> flat, Context& context) {
     const TriangleMesh& mesh = surface.mesh;
     const std::span<const u32> opposite = surface.opposite;
     const std::size_t count = tets.positions.size();
@@ -33,6 +33,7 @@ Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span
     }
     Array<u8> good(count, u8(0));
     for (u32 vertex = 0; vertex < count; ++vertex) {
+        if ((vertex & 0xffff) == 0) context.check_cancelled();
         if (triangles_at[vertex] == 0) continue;
         // Half-edges from the vertex, in clockwise order.
         u32 walked = 0, h = first[vertex];
@@ -96,14 +97,11 @@ public:
         : tets_(diagram.tets),
           surface_(surface),
           context_(context),
-          good_(good_points(tets_, mesh, flat)),
+          good_(good_points(tets_, mesh, flat, context)),
           outer_(outer_corners(tets_, surface, good_, context)),
           components_(tets_.positions.size()),
           outside_of_(tets_.positions.size(), Outside::unknown),
           is_out_(tets_.cells.size(), u8(0)) {
-        is_used_.assign(good_.size(), u8(0));
-        for (const Triangle& t : mesh.mesh.triangles)
-            for (u32 v : t) is_used_[v] = 1;
         for (const Triangle& t : mesh.mesh.triangles)
             for (std::size_t k = 0; k < 3; ++k)
                 if (good_[t[k]] == 1 && good_[t[(k + 1) % 3]] == 1) components_.unite(t[k], t[(k + 1) % 3]);
@@ -182,6 +180,7 @@ private:
         if (std::ranges::count(good_, u8(1)) == 0) return;
         Array<u8> seen = is_out_;
         for (u32 seed = 0; seed < seen.size(); ++seed) {
+            if ((seed & 0xffff) == 0) context_.check_cancelled();
             if (seen[seed] == 1) continue;
             seen[seed] = 1;
             queue_.assign(1, seed);
@@ -204,9 +203,6 @@ private:
             squared[static_cast<std::size_t>(i)] =
                 squared_circumradius(tets_.positions[a], tets_.positions[b], tets_.positions[c]);
         }
-        if (getenv("ISO"))
-            for (int k = 0; k < 4; ++k)
-                if (k != side.corner && is_used_[vertex(side.cell, k)] == 0) return false;
         return std::ranges::min_element(squared) - squared.begin() == side.corner;
     }
 
@@ -216,7 +212,7 @@ private:
     Array<u8> good_, outer_;
     DisjointSets components_;
     Array<Outside> outside_of_;  ///< at the root of each component
-    Array<u8> is_out_, is_used_;
+    Array<u8> is_out_;
     std::vector<u32> queue_;
 };
 

@@ -18,7 +18,11 @@ struct Peeling {
 /// from cell to cell: into cells that the surface labels outside, and into a cell whose four points are all poor unless
 /// it comes through the cell's smallest facet (by circumradius). A point is good if its triangles form exactly one
 /// closed fan, and no two of them meet at an edge of the point with a cosine between their normals of -0.9 or less (of
-/// less than 0 at a point that is not flat). Cost: linear.
+/// less than 0 at a point that is not flat).
+///
+/// Good points that triangles connect are labelled together, by the first cell at one of them that the outside reaches:
+/// this cell is outside. If the good points of a cell disagree, most of them decide, and on a tie the cell is inside.
+/// Face-connected parts of the solid without a good point are dropped, unless no point is good. Cost: linear.
 Peeling peel(const Diagram& diagram, const Surface& surface, const SurfaceMesh& mesh, std::span<const u8> flat,
              Context& context);
 

@@ -26,7 +26,7 @@ bool is_inner(const Surface& surface, const Side& side) {
 /// A gap of the surface in the solid's boundary.
 struct Gap {
     std::vector<Side> facets;  ///< seen from their inner cells
-    bool may_be_closed = true;
+    bool touches_surface = false, may_be_closed = true;
 };
 
 class Gaps {
@@ -80,6 +80,7 @@ private:
                     else
                         reach(other);
                 });
+                gap.touches_surface |= on_both > 0;
                 if (on_boundary != 1 || on_surface != on_both || !agrees) gap.may_be_closed = false;
             }
         }
@@ -127,7 +128,7 @@ std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double
                            Surface& surface) {
     std::size_t closed = 0;
     for (const Gap& gap : Gaps(tets, sampling, lid_factor, labels, surface).all()) {
-        if (!gap.may_be_closed) continue;
+        if (!gap.may_be_closed || !gap.touches_surface) continue;
         ++closed;
         for (const Side& side : gap.facets) {
             surface.facets.add(tets, side);

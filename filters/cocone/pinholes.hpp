@@ -12,8 +12,8 @@ bool face_outside(const TetMesh& tets, std::span<const u8> labels, const Surface
 
 /// Closes gaps of the surface where the sampling is just too sparse for the vote. A gap is a part of the solid's
 /// boundary that is not in the surface, connected through edges. It is added as a whole if it joins the surface along
-/// its whole rim, with the same outer side, and no triangle of it spans an opening. Returns the number of gaps closed.
-/// Pre: the surface faces outside. Cost: linear in the cells.
+/// its whole boundary loop, with the same outer side, and no triangle of it spans an opening. Returns the number of
+/// gaps closed. Pre: the surface faces outside. Cost: linear in the cells.
 std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double lid_factor, std::span<const u8> labels,
                            Surface& surface);
 

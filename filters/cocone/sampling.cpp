@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t chunk = 1 << 12;
 /// Measured on a square patch, a hemisphere, a sphere and a torus: with 16 neighbours and a gap of 100 degrees, all
-/// points of the rims are found and no other; with 10 neighbours and 90 degrees, 22 points of the torus, too.
+/// points of the boundary loops are found and no other; with 10 neighbours and 90 degrees, 22 points of the torus, too.
 constexpr std::size_t gap_neighbours = 16;
 constexpr std::size_t spacing_neighbours = 6;
 
@@ -54,7 +54,10 @@ public:
             flat[v] = 1;
             queue.push_back(v);
         };
-        for (u32 v = 0; v < count; ++v) spread_to(v);
+        for (u32 v = 0; v < count; ++v) {
+            if ((v & 0xffff) == 0) context_.check_cancelled();
+            spread_to(v);
+        }
         for (std::size_t i = 0; i < queue.size(); ++i) {
             const u32 v = queue[i];
             for_each_neighbour(v, spread_to);
@@ -125,12 +128,12 @@ bool has_gap(std::span<const Vec3> points, const Vec3& normal, const elementary:
         double order;  ///< grows with the direction's angle, from 0 to 4
     };
     std::array<Direction, gap_neighbours> directions;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double x = points[i].dot(u), y = points[i].dot(v), sum = std::abs(x) + std::abs(y);
-        const double turn = sum > 0 ? x / sum : 1;
-        directions[i] = {x, y, y < 0 ? 3 + turn : 1 - turn};
+    auto end = directions.begin();
+    for (const Vec3& point : points) {
+        const double x = point.dot(u), y = point.dot(v), sum = std::abs(x) + std::abs(y);
+        if (sum > 0) *end++ = {x, y, y < 0 ? 3 + x / sum : 1 - x / sum};  // a point along the normal has no direction
     }
-    const auto end = directions.begin() + static_cast<std::ptrdiff_t>(points.size());
+    if (end - directions.begin() < 2) return true;
     std::ranges::sort(directions.begin(), end, {}, &Direction::order);
     for (auto a = directions.begin(); a != end; ++a) {
         const auto b = a + 1 == end ? directions.begin() : a + 1;
@@ -140,7 +143,7 @@ bool has_gap(std::span<const Vec3> points, const Vec3& normal, const elementary:
         const double difference = b->order - a->order + (a + 1 == end ? 4 : 0);
         if (difference > 2 || sine * angle.cosine - cosine * angle.sine > 0) return true;
     }
-    return points.size() < 2;
+    return false;
 }
 
 }  // namespace
@@ -157,8 +160,8 @@ Sampling sampling(const Diagram& diagram, const CoconeParams& params, Context& c
     Sampling result;
     result.flat = Flatness(diagram, params, context).flat();
     result.pole_flat = static_cast<std::size_t>(std::ranges::count(result.flat, u8(1)));
-    result.spacing.resize(positions.size());
-    result.boundary.resize(positions.size());
+    result.spacing.assign(positions.size(), 0.0);
+    result.boundary.assign(positions.size(), u8(0));
 
     const PointTree tree(positions, context.threads());
     Array<u32> row_of(positions.size());

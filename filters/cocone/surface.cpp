@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <deque>
 
 #include "cocone/candidates.hpp"
@@ -14,6 +15,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill::cocones {
 
@@ -45,17 +47,19 @@ public:
           taken_(tets_.cells.size()),
           inner_(tets_.cells.size(), u8(0)),
           settled_(tets_.cells.size(), std::uint16_t(0)),
-          left_count_(count(tets_, left)) {}
+          left_count_(count(tets_, left)),
+          component_of_(tets_.positions.size()) {}
 
-    /// Walks over every component of the candidates that has a vertex with an umbrella. If one of them has flat points
-    /// enough, those without are left out. What a walk does not reach is a component in the next round.
+    /// Walks over every component of the candidates that has a vertex with an umbrella, beginning at its lowest vertex.
+    /// If one of them has flat points enough, those without are left out. Then walks over the facets that these walks
+    /// did not reach, where they have a corner with an umbrella, from the lowest vertex up.
     void run() {
-        while (left_count_ > 0) {
-            const std::vector<OrientedFacet> seeds = outermost_facets();
-            if (seeds.empty()) break;
-            for (const OrientedFacet& seed : seeds)
-                if (left_.contains(seed.side)) walk(seed);
-        }
+        find_components();
+        std::vector<u32> vertices;
+        for (u32 vertex = 0; vertex < components_.size(); ++vertex)
+            if (components_[vertex].is_accepted) vertices.push_back(components_[vertex].lowest);
+        for (const u32 vertex : vertices) walk(seen_from_below(vertex));
+        if (left_count_ > 0) walk_over_rest();
         remove_surplus();
     }
 
@@ -63,25 +67,28 @@ public:
     Array<u8> take_inner() { return std::move(inner_); }
 
 private:
-    /// For each connected component of the candidates, a facet that is seen from beyond its lowest vertex.
-    std::vector<OrientedFacet> outermost_facets() {
-        DisjointSets sets(tets_.positions.size());
+    /// A component of the candidates, connected through vertices.
+    struct Component {
+        u32 lowest = TetMesh::outside_hull;
+        u32 vertices = 0, umbrellas = 0, flat = 0;
+        bool is_accepted = false;
+    };
+
+    void find_components() {
         std::vector<bool> is_used(tets_.positions.size());
-        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+        for (u32 cell = 0; cell < tets_.cells.size(); ++cell) {
+            if ((cell & 0xfffff) == 0) context_.check_cancelled();
             for (unsigned bits = left_.of(cell); bits != 0; bits &= bits - 1) {
                 const Triangle corners = corners_of(tets_, {cell, std::countr_zero(bits)});
-                sets.unite(corners[0], corners[1]);
-                sets.unite(corners[0], corners[2]);
+                component_of_.unite(corners[0], corners[1]);
+                component_of_.unite(corners[0], corners[2]);
                 for (const u32 vertex : corners) is_used[vertex] = true;
             }
-        struct Component {
-            u32 lowest = TetMesh::outside_hull;
-            u32 vertices = 0, umbrellas = 0, flat = 0;
-        };
-        std::vector<Component> components(tets_.positions.size());  // at the root of each set
-        for (u32 vertex = 0; vertex < components.size(); ++vertex) {
+        }
+        components_.resize(tets_.positions.size());
+        for (u32 vertex = 0; vertex < components_.size(); ++vertex) {
             if (!is_used[vertex]) continue;
-            Component& its = components[sets.find(vertex)];
+            Component& its = components_[component_of_.find(vertex)];
             if (its.vertices == 0 || is_lower(tets_.positions[vertex], tets_.positions[its.lowest]))
                 its.lowest = vertex;
             ++its.vertices;
@@ -91,26 +98,50 @@ private:
         const auto is_sampled = [](const Component& its) {
             return its.umbrellas > 0 && its.flat >= least_flat * its.vertices;
         };
-        any_sampled_ |=
-            std::ranges::any_of(components, [&](const Component& its) { return its.vertices > 0 && is_sampled(its); });
-        std::vector<OrientedFacet> seeds;
-        for (const Component& its : components)
-            if (any_sampled_ ? is_sampled(its) : its.umbrellas > 0) seeds.push_back(seen_from_below(its.lowest));
-        return seeds;
+        any_sampled_ = std::ranges::any_of(components_, is_sampled);
+        for (Component& its : components_) its.is_accepted = any_sampled_ ? is_sampled(its) : its.umbrellas > 0;
     }
 
-    /// A candidate at the vertex with its outer side towards lower x. Pre: no candidate of its component is lower.
+    void walk_over_rest() {
+        std::vector<u32> vertices;
+        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+            for (unsigned bits = left_.of(cell); bits != 0; bits &= bits - 1)
+                for (const u32 vertex : corners_of(tets_, {cell, std::countr_zero(bits)})) vertices.push_back(vertex);
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        std::ranges::sort(vertices, is_lower, [&](u32 vertex) -> const Vec3& { return tets_.positions[vertex]; });
+        // When a vertex is reached, no facet is left at a lower one.
+        for (const u32 vertex : vertices)
+            while (components_[component_of_.find(vertex)].is_accepted && has_facet_left(vertex))
+                walk(seen_from_below(vertex));
+    }
+
+    /// Whether a facet with a corner that owns an umbrella, and with a flat one, is left at the vertex. Drops the
+    /// others. If no component is well sampled, flat corners do not matter.
+    bool has_facet_left(u32 vertex) {
+        bool found = false;
+        for (const u32 cell : cells_at_[vertex])
+            for (unsigned bits = left_.of(cell); bits != 0; bits &= bits - 1) {
+                const Side side{cell, std::countr_zero(bits)};
+                const Triangle corners = corners_of(tets_, side);
+                if (std::ranges::find(corners, vertex) == corners.end()) continue;
+                const auto any = [&](std::span<const u8> flags) {
+                    return std::ranges::any_of(corners, [&](u32 corner) { return flags[corner] == 1; });
+                };
+                if (any(umbrellas_) && (any(flat_) || !any_sampled_))
+                    found = true;
+                else
+                    drop(side);
+            }
+        return found;
+    }
+
+    /// A candidate at the vertex with its outer side towards lower x. Pre: there is one, and none at a lower vertex of
+    /// the component.
     OrientedFacet seen_from_below(u32 vertex) const {
         std::vector<u32> cells(cells_at_[vertex].begin(), cells_at_[vertex].end());
         std::ranges::sort(cells);
-        // The search goes from the cell that contains the direction to lower x, or from outside the hull.
         std::vector<u32> queue;
-        for (const u32 cell : cells)
-            if (contains_downwards(cell, vertex)) {
-                queue.push_back(cell);
-                break;
-            }
-        const bool from_hull = queue.empty();
         std::vector<bool> seen(cells.size());
         const auto visit = [&](u32 cell) {
             const auto i = static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin());
@@ -119,7 +150,9 @@ private:
                 queue.push_back(cell);
             }
         };
-        if (from_hull) {
+        const auto [downwards, excess] = cell_downwards(cells, vertex);
+        if (excess > 0) {
+            // No cell contains the direction to lower x: it leaves the hull.
             for (const u32 cell : cells)
                 for (int i = 0; i < 4; ++i)
                     if (tets_.neighbours[cell][static_cast<std::size_t>(i)] == TetMesh::outside_hull &&
@@ -127,9 +160,8 @@ private:
                         if (left_.contains(cell, i)) return {{cell, i}, true};
                         visit(cell);
                     }
-        } else {
-            seen[static_cast<std::size_t>(std::ranges::lower_bound(cells, queue[0]) - cells.begin())] = true;
         }
+        if (queue.empty()) visit(downwards);
         for (std::size_t k = 0; k < queue.size(); ++k)
             for (int i = 0; i < 4; ++i) {
                 const u32 cell = queue[k];
@@ -138,22 +170,28 @@ private:
                 if (const u32 next = tets_.neighbours[cell][static_cast<std::size_t>(i)]; next != TetMesh::outside_hull)
                     visit(next);
             }
-        // Only beyond the hull: any candidate at the vertex.
+        // All candidates at the vertex are seen from beyond the hull alone.
         for (const u32 cell : cells)
             for (int i = 0; i < 4; ++i)
                 if (left_.contains(cell, i) && tets_.cells[cell][static_cast<std::size_t>(i)] != vertex)
                     return {{cell, i}, false};
+        assert(false);
         return {{cells[0], 0}, false};
     }
 
-    /// Whether the cell's corner at the vertex contains the direction to lower x.
-    bool contains_downwards(u32 cell, u32 vertex) const {
-        const Vec3 down = -Vec3::UnitX();
-        for (int i = 0; i < 4; ++i) {
-            if (tets_.cells[cell][static_cast<std::size_t>(i)] == vertex) continue;
-            if (area_vector(tets_.positions, corners_of(tets_, {cell, i})).dot(down) > 0) return false;
+    /// The cell at the vertex that contains the direction to lower x, and the cosine by which the direction is outside
+    /// of it: at most 0, unless it leaves the hull or by rounding.
+    std::pair<u32, double> cell_downwards(std::span<const u32> cells, u32 vertex) const {
+        std::pair<u32, double> best{cells[0], 2};
+        for (const u32 cell : cells) {
+            double largest = -1;
+            for (int i = 0; i < 4; ++i)
+                if (tets_.cells[cell][static_cast<std::size_t>(i)] != vertex)
+                    largest = std::max(
+                        largest, -area_vector(tets_.positions.span(), corners_of(tets_, {cell, i})).normalized().x());
+            if (largest < best.second) best = {cell, largest};
         }
-        return true;
+        return best;
     }
 
     Side owner_of(const Side& side) const {
@@ -244,6 +282,7 @@ private:
     /// edges with two that do not.
     void remove_surplus() {
         std::vector<Side> surplus;
+        context_.check_cancelled();
         for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
             for (unsigned bits = taken_.of(cell); bits != 0; bits &= bits - 1) {
                 const Side side{cell, std::countr_zero(bits)};
@@ -285,13 +324,16 @@ private:
     /// queue.
     std::array<std::deque<OpenEdge>, 3> queues_;
     std::size_t left_count_;
+    DisjointSets component_of_;
+    std::vector<Component> components_;  ///< at the root of each set
     bool any_sampled_ = false;  ///< whether a component has flat points enough
     std::vector<OrientedFacet> others_;
 };
 
 void require_range(std::string_view name, const Angle& angle, double least, double most) {
     if (!(angle.in_degrees() >= least && angle.in_degrees() <= most))
-        throw Error("{} must be an angle from {} to {} degrees; it is {}", name, least, most, angle.text());
+        throw Error("{} must be an angle from {} to {} degrees; it is {}", name, least, most, angle.text())
+            .hint("the defaults are those of the papers and suit most scans");
 }
 
 }  // namespace
@@ -332,6 +374,10 @@ void require_usable(const TetMesh& tets, const CoconeParams& params) {
     if (!tets.weights.empty())
         throw Error("needs cells made without weights; these {} points have weights", tets.weights.size())
             .hint("use 'delaunay' without `weights`");
+    if (const Array<u32> hidden = hidden_vertices(tets); !hidden.empty())
+        throw Error("needs every point in a cell; {} of {} points are in none, the first is {}", hidden.size(),
+                    tets.positions.size(), hidden[0])
+            .hint("'delaunay' without `weights` uses every point");
     require_range("cone-angle", params.cone_angle, 5, 40);
     require_range("prune-angle", params.prune_angle, 90, 170);
     require_range("normal-angle", params.normal_angle, 10, 90);
@@ -340,12 +386,14 @@ void require_usable(const TetMesh& tets, const CoconeParams& params) {
     if (!(params.lid_factor > 0)) throw Error("lid-factor must be above 0; it is {}", params.lid_factor);
 }
 
-void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface, const std::string& reason) {
+void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface, const std::string& reason,
+                  bool suggests_noise_mode) {
     throw Error("found no surface: of {} points, {} are flat, and {} triangles are candidates{}", tets.positions.size(),
                 sampling.pole_flat, surface.candidates, reason)
         .hint(
-            "the points are too noisy or too sparse for their shape; thin them first ('voxel-thin'), use "
-            "'tight-cocone: {noise: big-balls}', or take 'alpha-solid'");
+            fmt::format("the points are too noisy or too sparse for their shape; thin them first ('voxel-thin'){}, or "
+                        "take 'alpha-solid'",
+                        suggests_noise_mode ? ", use 'tight-cocone: {noise: big-balls}'" : ""));
 }
 
 ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, const Diagram& diagram,
@@ -368,7 +416,7 @@ ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, 
     for (std::size_t vertex = 0; vertex < count; ++vertex) {
         const std::size_t row = spatial.vertices[vertex];
         const Vec3& pole = diagram.poles.directions[vertex];
-        const double sign = outward[vertex].dot(pole) < 0 ? -1 : 1;
+        const double sign = outward[row].dot(pole) < 0 ? -1 : 1;
         for (int k = 0; k < 3; ++k) normals[3 * row + static_cast<std::size_t>(k)] = sign * pole[k];
         flat[row] = sampling.flat[vertex];
         boundary[row] = sampling.boundary[vertex];
@@ -377,15 +425,6 @@ ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, 
     result.add(Column("flat", 1, Buffer<u8>(std::move(flat))));
     result.add(Column("boundary", 1, Buffer<u8>(std::move(boundary))));
     return result;
-}
-
-Array<Vec3> outward_directions(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-    Array<Vec3> sums(positions.size(), Vec3::Zero());
-    for (const Triangle& triangle : triangles) {
-        const Vec3 vector = area_vector(positions, triangle);
-        for (const u32 vertex : triangle) sums[vertex] += vector;
-    }
-    return sums;
 }
 
 }  // namespace scanmill::cocones

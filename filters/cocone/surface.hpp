@@ -24,23 +24,22 @@ struct SurfaceMesh {
     Array<u32> opposite;  ///< half_edges::opposites(mesh)
 };
 
-/// Steps 2 to 4 of cocone.hpp. Each connected component is oriented so that its lowest point (by x, y, z) is seen from
-/// outside, and the orientations of its facets agree across edges. Cost: linear.
+/// Steps 2 to 4 of cocone.hpp. Each component of the candidates is oriented so that its lowest point (by x, y, z) is
+/// seen from outside, and the orientations of the facets agree across edges. Cost: linear, and a sort of the vertices
+/// at which the first walk left candidates.
 Surface surface_of(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params, Context& context);
 
 /// Throws Error for a tetrahedralisation that cannot be used, and for parameters out of range.
 void require_usable(const TetMesh& tets, const CoconeParams& params);
 
-/// The error when nothing is left: `filter` made no surface.
+/// Throws the Error of a filter that made no surface; `reason` ends its sentence.
 [[noreturn]] void refuse_empty(const TetMesh& tets, const Sampling& sampling, const Surface& surface,
-                               const std::string& reason);
+                               const std::string& reason, bool suggests_noise_mode = true);
 
 /// The vertex columns `pole-normal`, `flat` and `boundary` after the given ones, by given vertex. Given columns of
-/// these names are renamed, with a warning. Pole normals get the direction of `outward` where that is not zero.
+/// these names are renamed, with a warning. Pole normals get the direction of `outward`, by given vertex, where
+/// that is not zero.
 ColumnTable with_sampling(const ColumnTable& given, const SpatialTets& spatial, const Diagram& diagram,
                           const Sampling& sampling, std::span<const Vec3> outward, Context& context);
-
-/// Sums of the area vectors of the triangles at each vertex.
-Array<Vec3> outward_directions(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
 }  // namespace scanmill::cocones

@@ -75,13 +75,17 @@ Array<u32> outer_points(const TetMesh& tets, u32 neighbours, double factor, Cont
                 reach(across);
     }
     if (big == 0)
-        throw Error("noise-factor {}: none of {} cells is large against the distance to the {}. neighbour", factor,
-                    count, neighbours)
+        throw Error(
+            "noise-factor {}: none of {} cells is large compared with the distance to nearest neighbour number {}",
+            factor, count, neighbours)
             .hint("fewer noise-neighbours or a smaller noise-factor make more cells large");
     if (static_cast<double>(big - outer) < least_inside * static_cast<double>(big))
         throw Error("noise-factor {}: the outside reaches {} of {} large cells, so it has entered the object", factor,
                     outer, big)
-            .hint(fmt::format("a larger noise-factor, such as {:.2g}, makes fewer cells large", 1.5 * factor));
+            .hint(fmt::format(
+                "a larger noise-factor, such as {:.2g}, makes fewer cells large; the noise mode needs a scan "
+                "without holes",
+                1.5 * factor));
 
     Array<u32> kept;
     for (u32 vertex = 0; vertex < is_kept.size(); ++vertex)

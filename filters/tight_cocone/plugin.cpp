@@ -11,8 +11,10 @@ SCANMILL_FILTER() {
     declaration.summary("Makes a closed surface through the points, with every hole filled.")
         .source("Dey, Goswami 2003 and 2004; Woo, Dey 2005, section 2")
         .ties(
-            "A direction exactly on a limit of a cocone is inside. A cell whose good points disagree is inside. Of "
-            "equally small facets of a cell, the one opposite to its first corner counts.")
+            "A direction exactly on a limit of a cocone is inside. A cell whose good points disagree "
+            "follows most of them; on a tie it is inside. Among "
+            "equally small facets of a cell, the one opposite to its first corner counts, in the order along a "
+            "space-filling curve.")
         .adds({"pole-normal", "flat", "boundary"})
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation without weights.")
         .made_by("delaunay")
@@ -24,12 +26,12 @@ SCANMILL_FILTER() {
                 {{"none", P::Noise::none, "All points may be on the surface."},
                  {"big-balls", P::Noise::big_balls,
                   "Only the points on the outer side of a noisy sample, at large empty balls, are used. The result is "
-                  "smoother, and lies outside of the surface by about half a standard deviation of the noise."}},
+                  "smoother, and lies outside of the surface by 0.4 to 1 standard deviations of the noise."}},
                 "Treatment of noise.")
         .param("noise-neighbours", &P::noise_neighbours,
                "With big-balls: a ball is compared with the distance to the nearest neighbour of this number; the "
                "point itself is not counted.",
-               at_least(1))
+               at_least(1), at_most(1000))
         .param("noise-factor", &P::noise_factor,
                "With big-balls: a ball is large if its radius is more than this times that distance.", above(0))
         .metric("good", Unit::count, "Points where cocone's surface is one closed fan.", larger_is_better)
@@ -40,7 +42,7 @@ SCANMILL_FILTER() {
         .metric("holes-filled", Unit::count, "Boundary loops of cocone's surface that are filled.")
         .metric("invented-area", Unit::area, "Area of the triangles that are not in cocone's surface.", headline,
                 smaller_is_better)
-        .metric("removed-blobs", Unit::count, "Closed components of cocone's surface that lie inside the solid.")
+        .metric("removed-blobs", Unit::count, "Connected sets of good points that lie inside the solid.")
         .metric("mended-vertices", Unit::count,
                 "Vertices where the boundary was not a manifold before cells were added.", smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {

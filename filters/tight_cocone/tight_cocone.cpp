@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "cocone/pinholes.hpp"
 #include "scanmill/base/error.hpp"
@@ -11,6 +12,7 @@
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/handles.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 #include "scanmill/geometry/tets/incremental_solid.hpp"
@@ -30,8 +32,11 @@ constexpr double remarkable_share = 0.001, doubtful_share = 0.1;
 constexpr double doubtful_unused = 0.02;
 
 void require_noise(const TightCoconeParams& params) {
-    if (params.noise_neighbours < 1) throw Error("noise-neighbours must be at least 1; it is 0");
-    if (!(params.noise_factor > 0)) throw Error("noise-factor must be above 0; it is {}", params.noise_factor);
+    if (params.noise_neighbours < 1 || params.noise_neighbours > 1000)
+        throw Error("noise-neighbours must be from 1 to 1000; it is {}", params.noise_neighbours)
+            .hint("12 suits most scans");
+    if (!(params.noise_factor > 0))
+        throw Error("noise-factor must be above 0; it is {}", params.noise_factor).hint("1 suits most scans");
 }
 
 /// Adds cells around the vertices where the boundary is not a manifold, those with the smallest circumspheres first,
@@ -53,14 +58,15 @@ std::size_t mend(const Diagram& diagram, Array<u8>& labels, Context& context) {
 }
 
 /// The loops of an open surface whose edges are all edges of the closed one.
-std::size_t spanned_loops(const SurfaceMesh& open, std::span<const Triangle> closed) {
+std::size_t spanned_loops(const SurfaceMesh& open, const SpatialTets& spatial, std::span<const Triangle> closed) {
     const TriangleMesh& mesh = open.mesh;
     const std::vector<Array<u32>> loops = boundary_loops(mesh, open.opposite);
     if (loops.empty()) return 0;
+    const auto start = [&](u32 h) { return spatial.vertices[half_edges::start(mesh, h)]; };
+    const auto edge_of = [&](u32 h) { return make_edge(start(h), start(half_edges::after(h))); };
     std::vector<bool> is_on_loop(mesh.positions.size());
-    const auto edge_of = [&](u32 h) { return make_edge(half_edges::start(mesh, h), half_edges::end(mesh, h)); };
     for (const Array<u32>& loop : loops)
-        for (const u32 h : loop) is_on_loop[half_edges::start(mesh, h)] = true;
+        for (const u32 h : loop) is_on_loop[start(h)] = true;
     std::vector<Edge> edges;
     for (const Triangle& t : closed)
         for (std::size_t k = 0; k < 3; ++k)
@@ -96,7 +102,7 @@ void warn_about(const TightCoconeResult& result, std::size_t points, bool drops_
                 const std::function<bool(u32)>& is_invented, Context& context) {
     const double share = result.invented_area / result.area;
     const std::string text = fmt::format(
-        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it spans {}sharp or sparse places",
+        "{:.2g} % of the area ({:.4g} of {:.4g} {}²) is not in cocone's surface: it closes {}sharp or sparse parts",
         100 * share, result.invented_area, result.area, symbol(result.tets.frame.unit),
         result.holes_filled > 0 ? count_text(result.holes_filled, "hole", "holes") + " and " : "");
     if (share > doubtful_share)
@@ -104,8 +110,8 @@ void warn_about(const TightCoconeResult& result, std::size_t points, bool drops_
     else if (share > remarkable_share)
         context.warn(text);
     if (result.removed_blobs > 0)
-        context.warn(fmt::format("{} of cocone's surface {} inside the solid and {} left out",
-                                 count_text(result.removed_blobs, "closed component", "closed components"),
+        context.warn(fmt::format("{} of good points {} inside the solid and {} left out",
+                                 count_text(result.removed_blobs, "connected set", "connected sets"),
                                  by_count(result.removed_blobs, "lies", "lie"),
                                  by_count(result.removed_blobs, "is", "are")));
     const std::string left_out = fmt::format("{} of {} points {} not on the surface", result.unused, points,
@@ -143,10 +149,17 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     require_noise(params);
     TightCoconeResult result;
     result.tets = given;
-    if (params.noise == TightCoconeParams::Noise::big_balls)
-        result.tets =
-            tets_of(given, outer_points(given, params.noise_neighbours, params.noise_factor, context), context);
-    const SpatialTets spatial = in_spatial_order(result.tets, context.threads());
+    if (params.noise == TightCoconeParams::Noise::big_balls) {
+        const SpatialTets all = in_spatial_order(given, context);
+        Array<u32> kept = outer_points(all.tets, params.noise_neighbours, params.noise_factor, context);
+        for (u32& vertex : kept) vertex = all.vertices[vertex];
+        std::ranges::sort(kept);
+        result.tets = tets_of(given, kept, context);
+    } else if (params.noise_neighbours != TightCoconeParams().noise_neighbours ||
+               params.noise_factor != TightCoconeParams().noise_factor) {
+        context.warn("noise-neighbours and noise-factor have no effect while `noise` is none");
+    }
+    const SpatialTets spatial = in_spatial_order(result.tets, context);
     const TetMesh& tets = spatial.tets;
     context.progress(0.1);
     const Diagram diagram(tets, params.cone_angle.in_radians(), context);
@@ -164,21 +177,17 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
     if (std::ranges::count(labels, u8(1)) == 0)
         refuse_empty(tets, samples, surface,
                      fmt::format("; {} points are good and {} poor, and the outside spreads everywhere", result.good,
-                                 result.poor));
+                                 result.poor),
+                     params.noise == TightCoconeParams::Noise::none);
     context.progress(0.85);
     result.mended_vertices = mend(diagram, labels, context);
     const std::vector<bool> is_invented = measure_invented(spatial, surface, labels, result);
-    {
-        const Array<Triangle> boundary = boundary_triangles(tets, labels, context.threads());
-        result.holes_filled = spanned_loops(open, boundary);
-        const Array<Vec3> outward = outward_directions(tets.positions.span(), boundary);
-        result.tets.vertex_columns =
-            with_sampling(result.tets.vertex_columns, spatial, diagram, samples, outward, context);
-    }
     Array<u8> inside(labels.size());
     for (std::size_t cell = 0; cell < inside.size(); ++cell) inside[cell] = labels[spatial.cells[cell]];
     Array<Triangle> boundary = boundary_triangles(result.tets, inside, context.threads());
     result.tets.inside = std::move(inside);
+    result.holes_filled = spanned_loops(open, spatial, boundary);
+    context.check_cancelled();
     std::vector<u32> vertex_of;  // by vertex of the mesh, its vertex in the tetrahedralisation
     {
         std::vector<bool> is_used(tets.positions.size());
@@ -186,6 +195,13 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
             for (const u32 vertex : triangle) is_used[vertex] = true;
         for (u32 vertex = 0; vertex < is_used.size(); ++vertex)
             if (is_used[vertex]) vertex_of.push_back(vertex);
+    }
+    {
+        TriangleMesh whole;
+        whole.positions = result.tets.positions;
+        whole.triangles = boundary;
+        result.tets.vertex_columns =
+            with_sampling(result.tets.vertex_columns, spatial, diagram, samples, vertex_area_vectors(whole), context);
     }
     result.mesh = boundary_mesh(result.tets, std::move(boundary));
     result.unused = given.positions.size() - result.mesh.positions.size();

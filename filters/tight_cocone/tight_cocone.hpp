@@ -6,9 +6,10 @@
 /// points are labelled by it, beginning at the hull. Then the outside spreads from the hull from cell to cell. It stops
 /// at cells labelled inside, and enters a cell whose four points are all *poor* unless it comes through the cell's
 /// smallest facet (by circumradius). What is left is the solid: a union of cells, so its boundary is closed wherever
-/// cocone's surface has holes.
+/// cocone's surface has holes. Parts of it without a good point are dropped, unless no point is good.
 ///
-/// Source: Dey, Goswami 2003; Woo, Dey 2005, section 2; Dey, Goswami 2004 for the noise mode.
+/// Source: Dey, Goswami 2003; Woo, Dey 2005, section 2; Dey, Goswami 2004 for the noise mode. A second pass over good
+/// points that were not reached, as in the published program, would change nothing here: no cell at them is outside.
 
 #include "cocone/cocone.hpp"
 
@@ -39,7 +40,8 @@ struct TightCoconeResult {
     std::size_t holes_filled = 0;
     /// Area of the triangles that are not in cocone's surface, and of all.
     double invented_area = 0, area = 0;
-    /// Closed components of cocone's surface that lie inside the solid. They bound nothing.
+    /// Connected sets of good points inside the solid, such as the surface of a cavity: the outside does not reach
+    /// them.
     std::size_t removed_blobs = 0;
     /// Number of vertices where the boundary was not a manifold, and cells were added.
     std::size_t mended_vertices = 0;
@@ -49,15 +51,15 @@ struct TightCoconeResult {
 /// walk
 ///       has entered the object.
 /// Post: see TightCoconeResult. The boundary is a closed 2-manifold, oriented outwards, through a subset of the points.
-///       It has no cavities. The bytes do not depend on the number of threads. The surface does not depend on the order of the
-///       points, unless several lie within a 2^-21 of the cloud's extent.
-/// Ties: a cell whose good points disagree is inside. Of equally small facets, the one opposite to the first corner
-///       counts.
-/// Cost: linear in the cells, and a search for 16 neighbours of each point; about 100 bytes per cell. The noise mode
+///       It has no cavities. The bytes do not depend on the number of threads. The surface does not depend on the order
+///       of the points, unless several lie within 2^-21 of the cloud's extent.
+/// Ties: a cell whose good points disagree follows most of them; on a tie it is inside. Of equally small facets, the
+///       one opposite to the first corner counts.
+/// Cost: linear in the cells, and a search for 16 neighbours of each point; about 130 bytes per cell. The noise mode
 ///       adds a tetrahedralisation of the kept points.
 /// Metrics: see plugin.cpp. Warns of an area that no point shows. Doubts the result if that is more than a tenth of the
-/// surface, and if more than 2 % of the points are not used without the noise mode. Passes on doubts_about_surface()
-/// and doubts_about_handles().
+/// surface, or if more than 2 % of the points are not used without the noise mode. Passes on doubts_about_surface(),
+/// and doubts_about_handles() if a point is poor.
 TightCoconeResult tight_cocone(const TetMesh& tets, const TightCoconeParams& params, Context& context);
 
 }  // namespace scanmill

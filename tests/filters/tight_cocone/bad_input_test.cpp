@@ -50,7 +50,7 @@ TEST(TightCoconeOfBadInput, ParametersOutOfRange_AreRefused) {
         EXPECT_THAT(refused([&](auto& p) { p.prune_angle = Angle::degrees(angle); }), HasSubstr("prune-angle"));
     for (const double angle : {9.9, 90.1})
         EXPECT_THAT(refused([&](auto& p) { p.normal_angle = Angle::degrees(angle); }), HasSubstr("normal-angle"));
-    for (const double angle : {59.9, 360.1})
+    for (const double angle : {59.9, 180.1})
         EXPECT_THAT(refused([&](auto& p) { p.gap_angle = Angle::degrees(angle); }), HasSubstr("gap-angle"));
     for (const double ratio : {0.99, std::nan("")})
         EXPECT_THAT(refused([&](auto& p) { p.ratio = ratio; }), HasSubstr("ratio must be at least 1"));

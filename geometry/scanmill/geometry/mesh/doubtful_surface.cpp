@@ -25,10 +25,8 @@ constexpr double doubtful_rough = 0.15;
 constexpr std::size_t few_edges = 10'000;
 constexpr double doubtful_turn = 5;  // degrees
 
-}  // namespace
-
-double spanned_share(const TriangleMesh& mesh, double edges) {
-    const double limit = edges * edge_spacing(mesh);
+/// The share of the area in triangles with an edge longer than the limit.
+double share_beyond(const TriangleMesh& mesh, double limit) {
     double spanned = 0, whole = 0;
     for (const Triangle& triangle : mesh.triangles) {
         const double area = area_vector(mesh.positions, triangle).norm();
@@ -42,6 +40,10 @@ double spanned_share(const TriangleMesh& mesh, double edges) {
     }
     return whole > 0 ? spanned / whole : 0;
 }
+
+}  // namespace
+
+double spanned_share(const TriangleMesh& mesh, double edges) { return share_beyond(mesh, edges * edge_spacing(mesh)); }
 
 double rough_share(const TriangleMesh& mesh) {
     const Array<u32> opposite = half_edges::opposites(mesh);
@@ -59,9 +61,10 @@ double rough_share(const TriangleMesh& mesh) {
 
 std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise) {
     std::vector<std::string> doubts;
+    const double edge = edge_spacing(mesh);
     if (noise > 0) {
         // The normal of an equilateral triangle with edge a turns by noise / (a / sqrt(2)) about any axis.
-        const double edge = edge_spacing(mesh), degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
+        const double degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
         if (degrees > doubtful_turn)
             doubts.push_back(fmt::format(
                 "the points have noise of {:.3g} u (standard deviation), which turns triangles with edges of {:.3g} u "
@@ -69,12 +72,12 @@ std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double n
                 "are thinned",
                 noise, edge, degrees));
     }
-    if (const double share = spanned_share(mesh, long_edge); share > doubtful_spanned)
+    if (const double share = share_beyond(mesh, long_edge * edge); share > doubtful_spanned)
         doubts.push_back(fmt::format(
             "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges; these triangles "
             "span gaps between the points: scan the missing part, or remove outliers first",
             100 * share, long_edge));
-    else if (const double beside = spanned_share(mesh, long_edge_of_handle); beside > doubtful_spanned_of_handle)
+    else if (const double beside = share_beyond(mesh, long_edge_of_handle * edge); beside > doubtful_spanned_of_handle)
         if (const long genus = topology(mesh).genus.value_or(0); genus > 0)
             doubts.push_back(fmt::format(
                 "the surface has genus {} and spans gaps between the points: {:.2g} % of its area is in triangles with "

@@ -72,13 +72,15 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
     return result;
 }
 
-SpatialTets in_spatial_order(const TetMesh& tets, unsigned threads) {
+SpatialTets in_spatial_order(const TetMesh& tets, Execution& execution) {
+    const unsigned threads = execution.threads();
     SpatialTets result;
     result.vertices = spatial_order(tets.positions.span());
     const std::size_t count = result.vertices.size();
     Array<u32> number(count);
     Array<Vec3> positions(count);
     for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
         for (std::size_t v = begin; v < end; ++v) {
             number[result.vertices[v]] = static_cast<u32>(v);
             positions[v] = tets.positions[result.vertices[v]];
@@ -87,6 +89,7 @@ SpatialTets in_spatial_order(const TetMesh& tets, unsigned threads) {
     Array<Tetrahedron> cells(tets.cells.size());
     Array<Row> neighbours(cells.size());
     for_each_chunk(threads, cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
         for (std::size_t c = begin; c < end; ++c) {
             Tetrahedron renumbered;
             for (std::size_t i = 0; i < 4; ++i) renumbered[i] = number[tets.cells[c][i]];

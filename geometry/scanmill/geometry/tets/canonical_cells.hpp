@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "scanmill/base/execution.hpp"
 #include "scanmill/data/tets.hpp"
 
 namespace scanmill {
@@ -43,6 +44,6 @@ struct SpatialTets {
 };
 
 /// Cost: linear; 24 bytes per cell beside the result.
-SpatialTets in_spatial_order(const TetMesh& tets, unsigned threads);
+SpatialTets in_spatial_order(const TetMesh& tets, Execution& execution);
 
 }  // namespace scanmill

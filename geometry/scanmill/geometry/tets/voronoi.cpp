@@ -41,6 +41,7 @@ VoronoiEdge dual_edge(const TetMesh& tets, std::span<const Vec3> centres, u32 ce
     const Vec3 u = tets.positions[corners[j]] - a, v = tets.positions[corners[k]] - a, normal = u.cross(v);
     const double squared = normal.squaredNorm();
     VoronoiEdge edge;
+    if (squared == 0) return {centres[cell], Vec3::Zero(), 0, 0};
     edge.foot = a + (v.squaredNorm() * normal.cross(u) + u.squaredNorm() * v.cross(normal)) / (2 * squared);
     edge.normal = normal / std::sqrt(squared);
     edge.from = (centres[cell] - edge.foot).dot(edge.normal);

@@ -31,8 +31,8 @@ struct VoronoiEdge {
     double from, to;  ///< equal if both cells share one circumsphere; `to` is infinite for a ray
 };
 
-/// The edge dual to the facet opposite to a corner; its normal leaves the cell. Pre: `centres` are circumcentres(); the
-/// facet's corners are not collinear.
+/// The edge dual to the facet opposite to a corner; its normal leaves the cell. For a facet whose corners are collinear
+/// to rounding, the circumcentre of the cell, with normal 0. Pre: `centres` are circumcentres().
 VoronoiEdge dual_edge(const TetMesh& tets, std::span<const Vec3> centres, u32 cell, int corner);
 
 struct Poles {
