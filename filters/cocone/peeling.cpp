@@ -32,27 +32,34 @@ Array<u8> good_points(const TetMesh& tets, const SurfaceMesh& surface, std::span
         first[vertex] = std::min(first[vertex], h);
     }
     Array<u8> good(count, u8(0));
-    for (u32 vertex = 0; vertex < count; ++vertex) {
-        if ((vertex & 0xffff) == 0) context.check_cancelled();
-        if (triangles_at[vertex] == 0) continue;
-        // Half-edges from the vertex, in clockwise order.
-        u32 walked = 0, h = first[vertex];
-        do {
-            h = opposite[h];
-            if (h == half_edges::boundary) break;
-            h = half_edges::after(h);
-            ++walked;
-        } while (h != first[vertex]);
-        good[vertex] = h != half_edges::boundary && walked == triangles_at[vertex];
-    }
-    for (u32 h = 0; h < opposite.size(); ++h) {
-        if (opposite[h] == half_edges::boundary || opposite[h] < h) continue;
-        const Vec3 a = area_vector(tets.positions.span(), mesh.triangles[h / 3]),
-                   b = area_vector(tets.positions.span(), mesh.triangles[opposite[h] / 3]);
-        const double cosine = a.dot(b), size = a.norm() * b.norm();
-        for (const u32 vertex : {half_edges::start(mesh, h), half_edges::end(mesh, h)})
-            if (cosine <= folded_cosine * size || (cosine < 0 && flat[vertex] == 0)) good[vertex] = 0;
-    }
+    for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        for (std::size_t vertex = begin; vertex < end; ++vertex) {
+            if (triangles_at[vertex] == 0) continue;
+            // Half-edges from the vertex, in clockwise order.
+            u32 walked = 0, h = first[vertex];
+            do {
+                h = opposite[h];
+                if (h == half_edges::boundary) break;
+                h = half_edges::after(h);
+                ++walked;
+            } while (h != first[vertex]);
+            good[vertex] = h != half_edges::boundary && walked == triangles_at[vertex];
+        }
+    });
+    for_each_chunk(context.threads(), opposite.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        for (std::size_t i = begin; i < end; ++i) {
+            const u32 h = static_cast<u32>(i);
+            if (opposite[h] == half_edges::boundary || opposite[h] < h) continue;
+            const Vec3 a = area_vector(tets.positions.span(), mesh.triangles[h / 3]),
+                       b = area_vector(tets.positions.span(), mesh.triangles[opposite[h] / 3]);
+            const double cosine = a.dot(b), size = a.norm() * b.norm();
+            for (const u32 vertex : {half_edges::start(mesh, h), half_edges::end(mesh, h)})
+                if (cosine <= folded_cosine * size || (cosine < 0 && flat[vertex] == 0))
+                    std::atomic_ref(good[vertex]).store(0, std::memory_order_relaxed);
+        }
+    });
     return good;
 }
 
@@ -175,9 +182,11 @@ private:
             if (is_good(cell, k)) decide(cell, k, is_outer(cell, k));
     }
 
-    /// Components of cells that no good point supports are what the peel left of outliers, unless no point is good.
+    /// Components of cells that no good point supports are what the peel left of outliers, unless no point is good. If
+    /// all points are good, there is none.
     void remove_components_without_good_points() {
-        if (std::ranges::count(good_, u8(1)) == 0) return;
+        const auto good = static_cast<std::size_t>(std::ranges::count(good_, u8(1)));
+        if (good == 0 || good == good_.size()) return;
         Array<u8> seen = is_out_;
         for (u32 seed = 0; seed < seen.size(); ++seed) {
             if ((seed & 0xffff) == 0) context_.check_cancelled();
