@@ -19,7 +19,7 @@
 /// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the
 ///    others. It crosses edges with one choice first, and stops at edges with several if no end owns an umbrella.
 ///    Triangles at edges that stay unclear are removed. Components without an umbrella are left out, and those with few
-///    flat points, which outliers make among themselves, unless all are like that.
+///    flat points, which outliers make among themselves, unless most points are in such components.
 /// 5. The solid behind the surface (see peeling.hpp) decides its outer side. Gaps are closed where the solid closes
 ///    them by facets of which none spans an opening.
 ///

@@ -51,8 +51,8 @@ public:
           component_of_(tets_.positions.size()) {}
 
     /// Walks over every component of the candidates that has a vertex with an umbrella, beginning at its lowest vertex.
-    /// If one of them has flat points enough, those without are left out. Then walks over the facets that these walks
-    /// did not reach, where they have a corner with an umbrella, from the lowest vertex up.
+    /// If components with flat points enough have most of the vertices, the others are left out. Then walks over the
+    /// facets that these walks did not reach, where they have a corner with an umbrella, from the lowest vertex up.
     void run() {
         find_components();
         std::vector<u32> vertices;
@@ -98,8 +98,13 @@ private:
         const auto is_sampled = [](const Component& its) {
             return its.umbrellas > 0 && its.flat >= least_flat * its.vertices;
         };
-        any_sampled_ = std::ranges::any_of(components_, is_sampled);
-        for (Component& its : components_) its.is_accepted = any_sampled_ ? is_sampled(its) : its.umbrellas > 0;
+        std::size_t all = 0, in_sampled = 0;
+        for (const Component& its : components_) {
+            all += its.vertices;
+            if (is_sampled(its)) in_sampled += its.vertices;
+        }
+        is_sampled_ = 2 * in_sampled > all;
+        for (Component& its : components_) its.is_accepted = is_sampled_ ? is_sampled(its) : its.umbrellas > 0;
     }
 
     void walk_over_rest() {
@@ -128,7 +133,7 @@ private:
                 const auto any = [&](std::span<const u8> flags) {
                     return std::ranges::any_of(corners, [&](u32 corner) { return flags[corner] == 1; });
                 };
-                if (any(umbrellas_) && (any(flat_) || !any_sampled_))
+                if (any(umbrellas_) && (any(flat_) || !is_sampled_))
                     found = true;
                 else
                     drop(side);
@@ -326,7 +331,7 @@ private:
     std::size_t left_count_;
     DisjointSets component_of_;
     std::vector<Component> components_;  ///< at the root of each set
-    bool any_sampled_ = false;  ///< whether a component has flat points enough
+    bool is_sampled_ = false;  ///< whether components with flat points enough have most of the vertices
     std::vector<OrientedFacet> others_;
 };
 
