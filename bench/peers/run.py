@@ -34,6 +34,8 @@ def arguments():
     parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
     parser.add_argument("--into", type=pathlib.Path,
                         help="folder of the results (default: bench for all rows, else build/peers)")
+    parser.add_argument("--merge", action="store_true",
+                        help="put the chosen rows into bench/results.json, with their own date and revision")
     parser.add_argument("--only-table", action="store_true", help="measure nothing; write RESULTS.md from results.json")
     parser.add_argument("--list", action="store_true", help="print the names of the rows and stop")
     return parser.parse_args()
@@ -96,6 +98,14 @@ def write(folder, results):
         part.replace(folder / name)
 
 
+def merged(old, new, names):
+    """The old results with the new rows in the place that `names` gives them; each has its own date and revision."""
+    rows = {row["name"]: row for row in old["rows"]}
+    for row in new["rows"]:
+        rows[row["name"]] = {**row, "date": new["date"], "revision": new["revision"]}
+    return {**old, "rows": [rows[name] for name in names if name in rows]}
+
+
 def main():
     options = arguments()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends the child processes and removes the temporary files
@@ -129,6 +139,10 @@ def main():
         results["rows"].append(record)
         print("\n".join(table.section(record)), flush=True)
         failed += [f"{row.name}: {why}" for why in trouble(record)]
+    if options.merge:
+        into = options.into or ROOT / "bench"
+        names = [row.name for row in all_rows(inputs, True)]
+        results = merged(json.loads((into / "results.json").read_text()), results, names)
     into.mkdir(parents=True, exist_ok=True)
     write(into, results)
     print(f"written: {into / 'results.json'}, {into / 'RESULTS.md'}")

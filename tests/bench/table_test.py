@@ -6,7 +6,7 @@ import unittest
 from unittest import mock
 
 from harness import figures, filters, machine, table
-from run import trouble
+from run import merged, trouble
 
 
 def entry(name, seconds, **more):
@@ -225,6 +225,20 @@ class TroubleTest(unittest.TestCase):
         wrong = entry("pcl", [1.0], unequal="kept is 5")
         self.assertEqual(self.trouble(entry("scanmill", [1.0]), wrong, entry("cgal", [1.0])), [])
         self.assertEqual(len(self.trouble(entry("scanmill", [1.0]), wrong)), 1)
+
+
+class MergedTest(unittest.TestCase):
+    def test_a_row_replaces_that_of_its_name_or_takes_its_place_and_has_its_own_date(self):
+        old, new = results([entry("scanmill", [2.0])]), results([entry("scanmill", [1.0])])
+        new.update(date="2027-08-09 10:11 UTC", revision="def")
+        both = merged(old, new, ["thin"])
+        self.assertEqual(both["date"], old["date"])
+        self.assertEqual([row["contenders"][0]["seconds"] for row in both["rows"]], [[1.0]])
+        self.assertIn("measured by itself on 2027-08-09 10:11 UTC, Scanmill def", table.page(both))
+        new["rows"][0]["name"] = "first"
+        both = merged(old, new, ["first", "thin", "not measured"])
+        self.assertEqual([row["name"] for row in both["rows"]], ["first", "thin"])
+        self.assertNotIn("measured by itself", "\n".join(table.section(both["rows"][1])))
 
 
 if __name__ == "__main__":

@@ -130,6 +130,8 @@ def section(row, smaller=None):
         lines[-1] += f" · {one['what']}" + (f": {counts}" if counts else "")
     if row["filters"]:
         lines[-1] += " · version " + ", ".join(f"{number} of {name}" for name, number in row["filters"].items())
+    if "revision" in row:
+        lines[-1] += f" · measured by itself on {row['date']}, Scanmill {row['revision']}"
     lines += ["", f"Equal: {row['equal']}", ""]
     if row["failure"]:
         return lines[:-2] + ["", f"**failed**: {row['failure']}", ""]
