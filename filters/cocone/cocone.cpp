@@ -58,17 +58,13 @@ void report_gaps(const CoconeResult& result, std::size_t points, Context& contex
 
 CoconeResult cocone(const TetMesh& given, const CoconeParams& params, Context& context) {
     require_usable(given, params);
-    const SpatialTets spatial = in_spatial_order(given, context);
+    Reconstruction found(given, params, context);
+    const SpatialTets& spatial = found.spatial;
     const TetMesh& tets = spatial.tets;
-    const Diagram diagram(tets, params.cone_angle.in_radians(), context);
-    context.progress(0.3);
-    const Sampling samples = sampling(diagram, params, context);
-    context.progress(0.5);
-    Surface surface = surface_of(diagram, samples, params, context);
-    context.progress(0.7);
+    const Sampling& samples = found.samples;
     CoconeResult result;
-    result.mesh = close_by_solid(diagram, samples, params, surface, context).mesh.mesh;
-    if (result.mesh.triangles.empty()) refuse_empty(tets, samples, surface, "");
+    result.mesh = std::move(found.solid.mesh.mesh);
+    if (result.mesh.triangles.empty()) refuse_empty(tets, samples, found.surface, "");
     context.progress(0.9);
     face_outwards(result.mesh, context);
     Array<Triangle> triangles(result.mesh.triangles.begin(), result.mesh.triangles.end());
@@ -77,7 +73,7 @@ CoconeResult cocone(const TetMesh& given, const CoconeParams& params, Context& c
     result.mesh.positions = given.positions;
     result.mesh.triangles = std::move(triangles);
     result.mesh.vertex_columns =
-        with_sampling(given.vertex_columns, spatial, diagram, samples, vertex_area_vectors(result.mesh), context);
+        with_sampling(given.vertex_columns, spatial, found.diagram, samples, vertex_area_vectors(result.mesh), context);
     result.mesh = without_unused_vertices(result.mesh);
     result.unused = tets.positions.size() - result.mesh.positions.size();
     result.boundary_points = samples.boundary_points;

@@ -13,7 +13,7 @@
 ///    finds a third of a gently curved rim.
 /// 2. A triangle is a candidate if its dual Voronoi edge meets the cocones of all its flat corners, or of all corners
 ///    if none is flat. Triangles between boundary points alone with an edge longer than `lid_factor` local spacings
-///    span an opening and are no candidates. The local spacing is the mean distance to the six nearest neighbours.
+///    span an opening and are not candidates. The local spacing is the mean distance to the six nearest neighbours.
 /// 3. A point owns an umbrella if candidates at it form a closed fan. Candidates at it outside of such fans are
 /// removed.
 /// 4. A walk from triangle to triangle takes, at each edge, the first candidate seen from outside, and drops the
@@ -66,7 +66,7 @@ struct CoconeResult {
 };
 
 /// Pre:  a tetrahedralisation made by delaunay() without weights; parameters in their ranges. Throws Error otherwise,
-///       and if there is no triangle.
+///       and if no triangle is found.
 /// Post: see CoconeResult. Closed components face outwards, and cavities inwards. An open component faces away from the
 ///       solid behind it. The bytes do not depend on the number of threads. The
 ///       surface does not depend on the order of the points, unless several lie within a 2^-21 of the cloud's extent.

@@ -138,6 +138,9 @@ std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double
     return closed;
 }
 
+namespace {
+
+/// Peels the solid off the surface, lets the surface face outside and closes its pinholes.
 SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params,
                                 Surface& surface, Context& context) {
     const TetMesh& tets = diagram.tets;
@@ -148,5 +151,21 @@ SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling
     if (is_turned || closed > 0) mesh = SurfaceMesh(tets, surface);
     return {std::move(peeling), std::move(mesh)};
 }
+
+/// Returns the value, and reports the fraction of the work that is done with it.
+template <class Value>
+Value reported(Value value, double fraction, Context& context) {
+    context.progress(fraction);
+    return value;
+}
+
+}  // namespace
+
+Reconstruction::Reconstruction(const TetMesh& given, const CoconeParams& params, Context& context)
+    : spatial(reported(in_spatial_order(given, context), 0.1, context)),
+      diagram(spatial.tets, params.cone_angle.in_radians(), context),
+      samples(reported(sampling(diagram, params, context), 0.5, context)),
+      surface(reported(surface_of(diagram, samples, params, context), 0.7, context)),
+      solid(reported(close_by_solid(diagram, samples, params, surface, context), 0.8, context)) {}
 
 }  // namespace scanmill::cocones

@@ -19,11 +19,19 @@ std::size_t close_pinholes(const TetMesh& tets, const Sampling& sampling, double
 
 struct SurfaceWithSolid {
     Peeling peeling;
-    SurfaceMesh mesh;  ///< of the surface as it is then
+    SurfaceMesh mesh;  ///< the surface with its pinholes closed
 };
 
-/// Peels the solid off the surface, lets the surface face outside and closes its pinholes.
-SurfaceWithSolid close_by_solid(const Diagram& diagram, const Sampling& sampling, const CoconeParams& params,
-                                Surface& surface, Context& context);
+/// All steps of cocone.hpp, with what they leave for further use. Reports progress up to 0.8.
+struct Reconstruction {
+    Reconstruction(const TetMesh& given, const CoconeParams& params, Context& context);
+    Reconstruction(const Reconstruction&) = delete;  // `diagram` refers to `spatial`
+
+    SpatialTets spatial;
+    Diagram diagram;
+    Sampling samples;
+    Surface surface;
+    SurfaceWithSolid solid;
+};
 
 }  // namespace scanmill::cocones

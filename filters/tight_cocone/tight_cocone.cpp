@@ -159,16 +159,13 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
                params.noise_factor != TightCoconeParams().noise_factor) {
         context.warn("noise-neighbours and noise-factor have no effect while `noise` is none");
     }
-    const SpatialTets spatial = in_spatial_order(result.tets, context);
+    Reconstruction found(result.tets, params, context);
+    const SpatialTets& spatial = found.spatial;
     const TetMesh& tets = spatial.tets;
-    context.progress(0.1);
-    const Diagram diagram(tets, params.cone_angle.in_radians(), context);
-    context.progress(0.3);
-    const Sampling samples = sampling(diagram, params, context);
-    context.progress(0.5);
-    Surface surface = surface_of(diagram, samples, params, context);
-    context.progress(0.7);
-    auto [peeling, open] = close_by_solid(diagram, samples, params, surface, context);
+    const Diagram& diagram = found.diagram;
+    const Sampling& samples = found.samples;
+    const Surface& surface = found.surface;
+    Peeling& peeling = found.solid.peeling;
     Array<u8>& labels = peeling.labels;
     result.good = peeling.good;
     result.poor = tets.positions.size() - peeling.good;
@@ -179,14 +176,13 @@ TightCoconeResult tight_cocone(const TetMesh& given, const TightCoconeParams& pa
                      fmt::format("; {} points are good and {} poor, and the outside spreads everywhere", result.good,
                                  result.poor),
                      params.noise == TightCoconeParams::Noise::none);
-    context.progress(0.85);
     result.mended_vertices = mend(diagram, labels, context);
     const std::vector<bool> is_invented = measure_invented(spatial, surface, labels, result);
     Array<u8> inside(labels.size());
     for (std::size_t cell = 0; cell < inside.size(); ++cell) inside[cell] = labels[spatial.cells[cell]];
     Array<Triangle> boundary = boundary_triangles(result.tets, inside, context.threads());
     result.tets.inside = std::move(inside);
-    result.holes_filled = spanned_loops(open, spatial, boundary);
+    result.holes_filled = spanned_loops(found.solid.mesh, spatial, boundary);
     context.check_cancelled();
     std::vector<u32> vertex_of;  // by vertex of the mesh, its vertex in the tetrahedralisation
     {

@@ -125,7 +125,7 @@ Json cache_info_schema() {
                             {"values", count()},
                             {"bytes", count()},
                             {"limit", bytes()},
-                            {"by-filter", described("The largest first; (scans) and (other) are no filters.",
+                            {"by-filter", described("The largest first; (scans) and (other) are not filters.",
                                                     list_of(object({{"filter", text()}, {"bytes", bytes()}})))},
                             {"by-workflow", described("By the workflow that stored the results, the largest first.",
                                                       list_of(object({{"workflow", text()}, {"bytes", bytes()}})))},

@@ -27,7 +27,7 @@ namespace scanmill {
 struct VoronoiEdge {
     /// The circumcentre of the dual facet. Of the edge's line, it is the point nearest to the facet's corners.
     Vec3 foot;
-    Vec3 normal;  ///< of the dual facet, of unit length
+    Vec3 normal;  ///< unit normal of the dual facet
     double from, to;  ///< equal if both cells share one circumsphere; `to` is infinite for a ray
 };
 
@@ -50,7 +50,7 @@ Poles poles(const TetMesh& tets, std::span<const Vec3> centres, const VertexCell
 struct Cocone {
     Vec3 apex;
     Vec3 axis;  ///< a unit vector
-    double squared_sine;  ///< of the cone angle, which is below 45 degrees
+    double squared_sine;  ///< squared sine of the cone angle, which is below 45 degrees
 
     /// The cone beyond the cocone that contains a direction: 1 for the one round the axis, -1 for the opposite one, 0
     /// if the direction is in the cocone. A direction on a limit is in the cocone.
