@@ -467,6 +467,7 @@ AlignResult align(const PointCloud& source, const PointCloud& target, const std:
         result.largest_residual = std::max(result.largest_residual, result.residuals.back().norm());
     }
     result.rms = root_mean_square(fit.squares, result.partner.size());
+    result.transform.rms = result.rms;
     result.scale = fit.scale;
     if (part) result.error_at_part = error_at(*part, source, fit);
     report(result, fit, unit, params, context);

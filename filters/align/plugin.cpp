@@ -23,7 +23,7 @@ std::optional<AlignPart> part_at(const Inputs& inputs) {
 
 SCANMILL_FILTER() {
     using P = AlignParams;
-    return Declare<P>("align", 3)
+    return Declare<P>("align", 4)
         .summary("Finds the rigid motion that carries points onto corresponding points.")
         .source("Kabsch 1978; Umeyama 1991; Wang 2006, chapter 5")
         .ties("A `first-corner` that is equally near to two corners is refused.")
@@ -32,7 +32,7 @@ SCANMILL_FILTER() {
         .in<PointCloud>("target", "The corresponding points, such as the same corners measured by a machine.")
         .in<PointCloud, TriangleMesh>(
             "part", "The part that will be moved, in the source's frame; for `error-at-part`.", optional)
-        .out<RigidTransform>("transform", "From the frame of the source to that of the target; it never scales.")
+        .out<RigidTransform>("transform", "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
         .choice("scale", &P::scale,
                 {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` is not computed."},
                  {"report", P::Scale::report,

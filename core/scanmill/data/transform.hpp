@@ -3,6 +3,7 @@
 /// `transform`: a rigid motion from one named frame to another.
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "scanmill/data/frame.hpp"
@@ -17,13 +18,16 @@ struct RigidTransform {
     Vec3 translation = Vec3::Zero();
     LengthUnit unit = LengthUnit::unknown;
     std::string from, to;
+    /// Root mean square distance that is left between what the motion brings together, in `unit`. Without a value if
+    /// the motion was not found by fitting.
+    std::optional<double> rms{};
 
     Vec3 apply(const Vec3& world) const { return rotation * world + translation; }
 };
 constexpr auto fields(const RigidTransform*) {
     return std::tuple{field("rotation", &RigidTransform::rotation), field("translation", &RigidTransform::translation),
                       field("unit", &RigidTransform::unit), field("from", &RigidTransform::from),
-                      field("to", &RigidTransform::to)};
+                      field("to", &RigidTransform::to), field("rms", &RigidTransform::rms)};
 }
 
 }  // namespace scanmill

@@ -255,6 +255,28 @@ public:
         });
         return *this;
     }
+    /// A list of choices.
+    template <class Enum, class Owner>
+        requires std::derived_from<Params, Owner>
+    Declare& choices(std::string name, std::vector<Enum> Owner::*field,
+                     std::vector<Alternative<std::type_identity_t<Enum>>> alternatives, std::string help) {
+        ParameterSpec& spec = add_parameter(std::move(name), std::move(help));
+        spec.type = ParameterType::choice;
+        spec.list = true;
+        std::vector<ParameterScalar> defaults;
+        for (const Enum value : Params{}.*field)
+            for (const auto& alternative : alternatives)
+                if (alternative.value == value) defaults.emplace_back(alternative.name);
+        spec.default_value = std::move(defaults);
+        for (const auto& alternative : alternatives) spec.choices.push_back({alternative.name, alternative.help});
+        setters_.emplace_back(spec.name, [field, alternatives](Params& params, const ParameterValue& value) {
+            (params.*field).clear();
+            for (const ParameterScalar& item : std::get<std::vector<ParameterScalar>>(value))
+                for (const auto& alternative : alternatives)
+                    if (alternative.name == std::get<std::string>(item)) (params.*field).push_back(alternative.value);
+        });
+        return *this;
+    }
     template <std::same_as<MetricOption>... Options>
     Declare& metric(std::string name, Unit unit, std::string help, Options... options) {
         const auto has = [&]([[maybe_unused]] MetricOption wanted) { return ((options == wanted) || ...); };
@@ -268,6 +290,12 @@ public:
     /// filter to its results.
     Declare& measures(std::string value, std::string truth) {
         declaration_.spec.measures = MeasureSpec{std::move(value), std::move(truth)};
+        return *this;
+    }
+    /// Declares that the filter draws the value at this input; its first output is the picture. A step without `in`
+    /// draws the last geometric value before it.
+    Declare& draws(std::string value) {
+        declaration_.spec.draws = DrawSpec{std::move(value)};
         return *this;
     }
     /// `body(inputs, params, context)` returns Outputs.

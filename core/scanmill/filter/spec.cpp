@@ -109,6 +109,15 @@ void require_sound_measure(const FilterSpec& spec) {
                         name);
 }
 
+void require_sound_drawing(const FilterSpec& spec) {
+    const PortSpec* input = spec.input(spec.draws->value);
+    if (!input || input->optional || input->list)
+        throw Error("filter {}: it draws '{}', which must be a required input of one value", spec.name,
+                    spec.draws->value);
+    if (spec.outputs.front().kind != kind_of<Picture>())
+        throw Error("filter {}: it draws '{}', so its first output must be a picture", spec.name, spec.draws->value);
+}
+
 }  // namespace
 
 const PortSpec* FilterSpec::input(std::string_view port) const { return find_named(inputs, port); }
@@ -154,6 +163,7 @@ void require_sound(const FilterSpec& spec) {
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec, parameter);
     if (spec.streams) require_sound_stream(spec);
     if (spec.measures) require_sound_measure(spec);
+    if (spec.draws) require_sound_drawing(spec);
 }
 
 }  // namespace scanmill

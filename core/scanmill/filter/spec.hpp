@@ -86,6 +86,14 @@ constexpr auto fields(const MeasureSpec*) {
     return std::tuple{field("value", &MeasureSpec::value), field("truth", &MeasureSpec::truth)};
 }
 
+/// For filters that draw a value: the name of this input. The first output is the picture.
+struct DrawSpec {
+    std::string value;
+
+    bool operator==(const DrawSpec&) const = default;
+};
+constexpr auto fields(const DrawSpec*) { return std::tuple{field("value", &DrawSpec::value)}; }
+
 struct FilterSpec {
     std::string name;
     int version = 1;  ///< increases if equal inputs and parameters produce other bytes
@@ -99,6 +107,7 @@ struct FilterSpec {
     std::vector<MetricSpec> metrics;
     std::optional<StreamSpec> streams;
     std::optional<MeasureSpec> measures;
+    std::optional<DrawSpec> draws;
     /// Names of columns that the filter may add to its outputs. Formats that cannot hold these columns leave them out
     /// without a warning.
     std::vector<std::string> adds;
@@ -126,6 +135,7 @@ constexpr auto fields(const FilterSpec*) {
         field("streams", &T::streams, "The filter can read its first input as a stream.").optional(),
         field("measures", &T::measures, "The filter compares the value at one input with the truth at another.")
             .optional(),
+        field("draws", &T::draws, "The filter draws the value at this input.").optional(),
         field("adds", &T::adds, "Columns that the filter may add to its outputs.").optional()};
 }
 
@@ -139,6 +149,7 @@ constexpr auto fields(const FilterSpec*) {
 /// - The filter can be streamed, but its first input is not one cloud of points, or another input is required.
 /// - The stream needs a parameter that does not exist or that always has a value.
 /// - The filter compares a value with a truth, but lacks one of these two inputs.
+/// - The filter draws a value, but lacks this input, or its first output is not a picture.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

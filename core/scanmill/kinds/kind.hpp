@@ -29,7 +29,8 @@ namespace scanmill {
     KIND(PatchComplex)           \
     KIND(ProbePlan)              \
     KIND(RigidTransform)         \
-    KIND(Metrics)
+    KIND(Metrics)                \
+    KIND(Picture)
 // clang-format on
 
 class FieldVisitor;
@@ -83,10 +84,10 @@ template <class T>
 Kind kind_of();
 
 inline std::string_view name_of(Kind kind) { return kind.name(); }
-/// Every kind: points, mesh, tets, features, patches, probes, transform, metrics, then the registered kinds.
+/// Every kind: points, mesh, tets, features, patches, probes, transform, metrics, picture, then the registered kinds.
 std::vector<Kind> all_kinds();
 std::optional<Kind> kind_named(std::string_view name);
-/// "points, mesh, tets, features, patches, probes, transform, metrics", for messages.
+/// "points, mesh, tets, features, patches, probes, transform, metrics, picture", for messages.
 std::string kind_names();
 
 /// Adds a kind to all_kinds(), for a module with its own kind. A second kind of the same name is ignored.

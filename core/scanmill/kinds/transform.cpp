@@ -79,6 +79,7 @@ struct PoseDocument {
     std::optional<std::array<double, 4>> rotation;
     std::optional<Vec3> translation;
     std::optional<std::array<std::array<double, 4>, 4>> matrix;
+    std::optional<double> rms;
 };
 constexpr auto fields(const PoseDocument*) {
     using T = PoseDocument;
@@ -88,7 +89,10 @@ constexpr auto fields(const PoseDocument*) {
             .optional(),
         field("rotation", &T::rotation, "A quaternion x, y, z, w.").optional(),
         field("translation", &T::translation).optional(),
-        field("matrix", &T::matrix, "Four rows, instead of rotation and translation.").optional()};
+        field("matrix", &T::matrix, "Four rows, instead of rotation and translation.").optional(),
+        field("rms", &T::rms,
+              "Root mean square distance that is left between what the motion brings together, in the unit.")
+            .optional()};
 }
 
 struct PosesDocument {
@@ -129,6 +133,9 @@ std::vector<ScanPose> poses_from_json(const Json& json, const OnWarning& warn) {
         ScanPose pose{each.scan, motion_at(each, fmt::format("pose {}", poses.size() + 1), warn)};
         pose.transform.unit = document.unit;
         pose.transform.to = document.frame;
+        if (each.rms && !(*each.rms >= 0))
+            throw Error("pose {}: 'rms' is {}; expected a length of at least 0", poses.size() + 1, *each.rms);
+        pose.transform.rms = each.rms;
         poses.push_back(std::move(pose));
     }
     return poses;
@@ -139,7 +146,7 @@ struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<R
     static constexpr std::string_view name = "transform";
     static constexpr std::string_view json_member = "poses";
     static void to_json(const RigidTransform& transform, Json& json) {
-        PoseDocument pose{transform.from, {}, {}, std::array<std::array<double, 4>, 4>{}};
+        PoseDocument pose{transform.from, {}, {}, std::array<std::array<double, 4>, 4>{}, transform.rms};
         for (std::size_t row = 0; row < 3; ++row) {
             const auto at = static_cast<Eigen::Index>(row);
             const auto r = transform.rotation.row(at);

@@ -6,7 +6,8 @@
 ///      "poses": [{"scan": "bun000.ply", "rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]}
 ///
 /// A pose with rotation q = [qx, qy, qz, qw] and translation t maps a point p to R(q) p + t. `unit`, `frame` (the name
-/// of the frame that all poses lead to) and `scan` (the frame that the pose starts from) are optional. Instead of
+/// of the frame that all poses lead to), `scan` (the frame that the pose starts from) and a pose's `rms` (the residual
+/// of the fit that found it) are optional. Instead of
 /// rotation and translation, a pose may have `"matrix"`: four rows of four numbers that map (p, 1). Coordinates are
 /// world coordinates.
 ///

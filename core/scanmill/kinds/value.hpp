@@ -9,6 +9,7 @@
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/patches.hpp"
+#include "scanmill/data/picture.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/probes.hpp"
 #include "scanmill/data/tets.hpp"
