@@ -25,9 +25,12 @@ struct RigidTransform {
     Vec3 apply(const Vec3& world) const { return rotation * world + translation; }
 };
 constexpr auto fields(const RigidTransform*) {
-    return std::tuple{field("rotation", &RigidTransform::rotation), field("translation", &RigidTransform::translation),
-                      field("unit", &RigidTransform::unit), field("from", &RigidTransform::from),
-                      field("to", &RigidTransform::to), field("rms", &RigidTransform::rms)};
+    return std::tuple{field("rotation", &RigidTransform::rotation),
+                      field("translation", &RigidTransform::translation),
+                      field("unit", &RigidTransform::unit),
+                      field("from", &RigidTransform::from),
+                      field("to", &RigidTransform::to),
+                      field("rms", &RigidTransform::rms)};
 }
 
 }  // namespace scanmill

@@ -153,14 +153,12 @@ void assign(std::optional<T>& field, const ParameterValue& value) {
 }  // namespace detail
 
 /// Options of an input port, in any combination: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points",
-/// "…", list)`. A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`.
-enum class PortOption { optional, list };
+/// "…", list)`. A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`. With `by_name`,
+/// only `in` wires the port; of an output, only steps that name it in `in` take its value.
+enum class PortOption { optional, list, by_name };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
-
-/// Option of an output: only steps that name the output in `in` take its value.
-enum class OutputOption { by_name };
-inline constexpr OutputOption by_name = OutputOption::by_name;
+inline constexpr PortOption by_name = PortOption::by_name;
 
 /// Options of a metric, in any combination. A headline is a column in a run's summary. A numbered metric is reported
 /// once per item: NAME, NAME@2, … The last two options state which of two values is better.
@@ -200,6 +198,7 @@ public:
                                             ((options == PortOption::list) || ...),
                                             ((options == PortOption::optional) || ...),
                                             {kind_of<Others>()...}});
+        declaration_.spec.inputs.back().by_name = ((options == PortOption::by_name) || ...);
         return *this;
     }
     /// Names the filter that usually produces the value of the last declared input. Examples start with this filter.
@@ -208,10 +207,10 @@ public:
         return *this;
     }
     /// The first output is the primary one.
-    template <class T, std::same_as<OutputOption>... Options>
+    template <class T, std::same_as<PortOption>... Options>
     Declare& out(std::string port, std::string help, Options... options) {
         declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help)});
-        declaration_.spec.outputs.back().by_name = ((options == OutputOption::by_name) || ...);
+        declaration_.spec.outputs.back().by_name = ((options == PortOption::by_name) || ...);
         return *this;
     }
     /// Declares an output that has the kind of the value at the input `like`. Pre: this input is already declared.
@@ -264,7 +263,8 @@ public:
         spec.type = ParameterType::choice;
         spec.list = true;
         std::vector<ParameterScalar> defaults;
-        for (const Enum value : Params{}.*field)
+        const Params initial;
+        for (const Enum value : initial.*field)
             for (const auto& alternative : alternatives)
                 if (alternative.value == value) defaults.emplace_back(alternative.name);
         spec.default_value = std::move(defaults);

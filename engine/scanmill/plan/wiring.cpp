@@ -96,7 +96,7 @@ private:
     }
 
     std::vector<ValueSource> nearest(const PortSpec& port) {
-        if (!port.also.empty()) {
+        if (!port.also.empty() || port.by_name) {
             if (!port.optional)
                 diagnostics_.error(step_.position,
                                    "the port '{}' of {} takes {} and must be named in `in`; expected `in: {{{}: …}}`",
@@ -105,7 +105,7 @@ private:
         }
         std::size_t rivals = 0;
         for (const PortSpec& other : spec_.inputs) {
-            if (other.kind != port.kind || other.name == port.name || !other.also.empty()) continue;
+            if (other.kind != port.kind || other.name == port.name || !other.also.empty() || other.by_name) continue;
             // An optional port would take the same value as an earlier port of its kind, so only `in` can wire it.
             if (port.optional && &other < &port) return {};
             rivals += other.optional ? 0 : 1;

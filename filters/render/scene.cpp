@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/spacing.hpp"
+#include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+#include "tessellate/tessellate.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// Colours that remain different for colour-blind people (Okabe and Ito 2008).
+constexpr Colour black = {30, 30, 30}, blue = {0, 114, 178}, vermillion = {213, 94, 0}, green = {0, 158, 115};
+
+/// Radius of a point's disc, in spacings. A regular grid of such discs has no gaps.
+constexpr double disc_radius = 0.75;
+/// Limit between smooth and sharp edges without declared sharp edges, as in `features`.
+constexpr double crease_angle = 40 * std::numbers::pi / 180;
+constexpr double line_width = 1.6, dot_radius = 3.5;
+
+std::string with_separators(std::size_t count) {
+    std::string text = std::to_string(count);
+    for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+    return text;
+}
+std::string counted(std::size_t count, std::string_view singular, std::string_view plural) {
+    return fmt::format("{} {}", with_separators(count), by_count(count, singular, plural));
+}
+
+/// The ends of the automatic scale: they leave out 1 % of the values on either side.
+ColourScale automatic_scale(std::span<const double> values) {
+    Array<double> finite;
+    for (const double value : values)
+        if (std::isfinite(value)) finite.push_back(value);
+    if (finite.empty()) return {0, 0};
+    const std::size_t left_out = finite.size() / 100;
+    const auto low = finite.begin() + static_cast<std::ptrdiff_t>(left_out),
+               high = finite.end() - 1 - static_cast<std::ptrdiff_t>(left_out);
+    std::nth_element(finite.begin(), low, finite.end());
+    const double lowest = *low;
+    std::nth_element(finite.begin(), high, finite.end());
+    ColourScale scale{lowest, *high};
+    if (scale.low < 0 && scale.high > 0) {
+        scale.high = std::max(-scale.low, scale.high);
+        scale.low = -scale.high;
+    }
+    return scale;
+}
+
+class SceneMaker {
+public:
+    SceneMaker(const RenderParams& params, Context& context) : params_(params), context_(context) {}
+
+    DrawnScene scene(const RenderInputs& inputs) {
+        std::visit([&](const auto& value) { show(value); }, inputs.scene);
+        if (params_.colour && !scene_.column)
+            throw Error("the scene has no columns, so `colour: {}` does not apply", *params_.colour)
+                .hint("`colour` is for meshes and points; leave it out");
+        std::visit([&](const auto& value) { draw_over(value); }, inputs.over);
+        if (!scene_.has_surface() && scene_.lines.empty() && scene_.dots.empty())
+            throw Error("there is nothing to draw: the scene is empty");
+        return std::move(scene_);
+    }
+
+private:
+    void show(std::monostate) { throw Error("there is nothing to draw: the scene is missing"); }
+
+    void show(const TriangleMesh* mesh) {
+        require_triangles(*mesh, "a picture needs at least one");
+        show(*mesh);
+    }
+
+    void show(const TriangleMesh& mesh) {
+        scene_.mesh = mesh;
+        scene_.summary = counted(mesh.triangles.size(), "triangle", "triangles");
+        if (params_.colour) {
+            const Column* column = mesh.vertex_columns.find(*params_.colour);
+            const bool by_face = !column;
+            if (by_face) column = mesh.face_columns.find(*params_.colour);
+            if (!column) no_such_column({&mesh.vertex_columns, &mesh.face_columns});
+            colour_by(*column, by_face, mesh.frame);
+        }
+        label(mesh.positions.span(), mesh.vertex_columns);
+        if (params_.boundaries || params_.creases) draw_edges(mesh);
+        if (params_.intersections) find_intersections(mesh);
+    }
+
+    void show(const PointCloud* cloud) {
+        require_points(*cloud, "a picture needs at least one");
+        scene_.summary = counted(cloud->size(), "point", "points");
+        const double spacing = point_spacing(cloud->positions.span());
+        const double diagonal = bounding_box(cloud->positions.span()).diagonal();
+        constexpr double of_diagonal = 0.005;  // for one point, and for points that coincide
+        const double radius = spacing > 0 ? disc_radius * spacing : diagonal > 0 ? of_diagonal * diagonal : 1;
+        const Column* normals = cloud->columns.find("normal");
+        scene_.discs_have_normals = normals && normals->components() == 3;
+        scene_.discs.resize(cloud->size());
+        for (std::size_t row = 0; row < cloud->size(); ++row) {
+            Vec3 normal = Vec3::Zero();
+            if (scene_.discs_have_normals) {
+                normal = {normals->number(row, 0), normals->number(row, 1), normals->number(row, 2)};
+                normal = normal.allFinite() && normal.norm() > 0 ? normal.normalized().eval() : Vec3::Zero().eval();
+            }
+            scene_.discs[row] = {cloud->positions[row], normal, radius};
+        }
+        if (params_.colour) {
+            const Column* column = cloud->columns.find(*params_.colour);
+            if (!column) no_such_column({&cloud->columns});
+            colour_by(*column, false, cloud->frame);
+        }
+        label(cloud->positions.span(), cloud->columns);
+    }
+
+    void show(const PatchComplex* patches) {
+        if (patches->tets.empty()) throw Error("the complex has no patches; a picture needs at least one");
+        show(tessellate(*patches, {}, context_));
+        scene_.summary = counted(patches->tets.size(), "patch", "patches");
+    }
+
+    void show(const FeatureGraph* features) {
+        draw_over(features);
+        scene_.summary = counted(features->polylines.size(), "feature line", "feature lines");
+    }
+
+    void show(const ProbePlan* plan) {
+        draw_over(plan);
+        scene_.summary = counted(plan->touches.size(), "touch", "touches");
+    }
+
+    void draw_over(std::monostate) {}
+    void draw_over(const TriangleMesh*) {}
+    void draw_over(const PatchComplex*) {}
+
+    void draw_over(const PointCloud* cloud) {
+        require_finite(cloud->positions.span());
+        if (cloud->columns.find("label")) return label(cloud->positions.span(), cloud->columns);
+        for (const Vec3& position : cloud->positions) scene_.dots.push_back({position, vermillion, dot_radius, ""});
+    }
+
+    void draw_over(const FeatureGraph* features) {
+        require_finite(features->positions.span(), "vertices");
+        for (const FeaturePolyline& line : features->polylines) {
+            const Colour colour = line.type == FeatureType::crease           ? black
+                                  : line.type == FeatureType::outer_boundary ? blue
+                                                                             : vermillion;
+            const auto at = [&](u32 i) { return features->positions[features->vertices[i]]; };
+            for (u32 i = line.begin; i + 1 < line.end; ++i)
+                scene_.lines.push_back({at(i), at(i + 1), colour, line_width});
+            if (line.closed && line.end > line.begin + 1)
+                scene_.lines.push_back({at(line.end - 1), at(line.begin), colour, line_width});
+        }
+        for (const u32 corner : features->corners)
+            scene_.dots.push_back({features->positions[corner], black, dot_radius, ""});
+    }
+
+    void draw_over(const ProbePlan* plan) {
+        for (const ProbeTouch& touch : plan->touches) {
+            if (!touch.position.allFinite()) throw Error("touch {} has a coordinate that is not finite", touch.touch);
+            scene_.dots.push_back({touch.position, touch.is_made() ? green : vermillion, dot_radius, ""});
+            if (touch.is_made()) scene_.lines.push_back({touch.start, touch.position, blue, line_width});
+        }
+    }
+
+    [[noreturn]] void no_such_column(std::initializer_list<const ColumnTable*> tables) const {
+        std::vector<std::string> names;
+        for (const ColumnTable* table : tables)
+            for (const Column& column : *table) names.push_back(column.name());
+        throw Error("the scene has no column '{}'; {}{}", *params_.colour,
+                    names.empty() ? "it has none" : "it has " + enumerated(names), did_you_mean(*params_.colour, names))
+            .hint("`colour` takes the name of a column");
+    }
+
+    void colour_by(const Column& column, bool by_face, const Frame& frame) {
+        DrawnColumn& drawn = scene_.column.emplace();
+        drawn.name = column.name();
+        drawn.by_face = by_face;
+        const std::size_t rows = column.rows();
+        if (column.type() == ScalarType::uint8 && (column.components() == 3 || column.components() == 4)) {
+            const std::span<const u8> numbers = column.values<u8>();
+            drawn.colours.resize(rows);
+            for (std::size_t row = 0; row < rows; ++row)
+                for (std::size_t i = 0; i < 3; ++i) drawn.colours[row][i] = numbers[row * column.components() + i];
+            return;
+        }
+        if (column.components() != 1)
+            throw Error("the column '{}' has {} per row; a picture needs one number, or a colour of three bytes",
+                        column.name(), column.is_list() ? "a list" : fmt::format("{} numbers", column.components()))
+                .hint("choose another column with `colour`");
+        drawn.values.resize(rows);
+        for (std::size_t row = 0; row < rows; ++row) drawn.values[row] = column.number(row);
+        const auto is_nan = [](double value) { return std::isnan(value); };
+        const std::size_t gaps = static_cast<std::size_t>(std::ranges::count_if(drawn.values, is_nan));
+        drawn.has_gaps = gaps > 0;
+        if (gaps == rows)
+            context_.warn(fmt::format("the column '{}' has no value: the whole scene is grey", column.name()));
+        if (column.length_exponent() == 1) drawn.unit = symbol(frame.unit);
+        if (!params_.scale) {
+            drawn.scale = automatic_scale(drawn.values);
+            return;
+        }
+        drawn.scale = {params_.scale->front().value(), params_.scale->back().value()};
+        if (!(drawn.scale.low <= drawn.scale.high) || !std::isfinite(drawn.scale.high - drawn.scale.low))
+            throw Error("the scale is upside down: it goes from {} to {}", number_text(drawn.scale.low),
+                        number_text(drawn.scale.high))
+                .hint("write the lower end first");
+    }
+
+    /// Writes the coloured column's value, or the label's number, at every row with a label.
+    void label(std::span<const Vec3> positions, const ColumnTable& columns) {
+        const Column* labels = columns.find("label");
+        if (!labels || labels->components() != 1) return;
+        const Column* values = params_.colour ? columns.find(*params_.colour) : nullptr;
+        if (values && values->components() != 1) values = nullptr;
+        for (std::size_t row = 0; row < positions.size(); ++row) {
+            const double number = labels->number(row);
+            if (!(number > 0)) continue;
+            scene_.dots.push_back({positions[row], black, dot_radius,
+                                   values ? fmt::format("{:+.3g}", values->number(row)) : fmt::format("{}", number)});
+        }
+    }
+
+    void draw_edges(const TriangleMesh& mesh) {
+        const bool by_angle = mesh.sharp_edges.empty();
+        const auto normal_of = [&](u32 half_edge) -> Vec3 {
+            const Triangle& t = mesh.triangles[half_edge / 3];
+            return (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+        };
+        const auto add = [&](u32 a, u32 b, Colour colour) {
+            scene_.lines.push_back({mesh.positions[a], mesh.positions[b], colour, line_width});
+        };
+        const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(mesh);
+        half_edges::for_each_edge(by_vertex, [&](u32 vertex, std::span<const half_edges::VertexHalfEdge> edge) {
+            if (edge.size() == 1 && params_.boundaries) add(vertex, edge[0].other, vermillion);
+            if (edge.size() == 2 && params_.creases && by_angle &&
+                angle_between(normal_of(edge[0].number), normal_of(edge[1].number)) > crease_angle)
+                add(vertex, edge[0].other, black);
+        });
+        if (params_.creases)
+            for (const Edge& edge : mesh.sharp_edges) add(edge[0], edge[1], black);
+    }
+
+    void find_intersections(const TriangleMesh& mesh) {
+        const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context_.threads());
+        const SelfIntersections found =
+            self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, context_);
+        scene_.intersecting.assign(mesh.triangles.size(), 0);
+        for (const auto& pair : found.pairs)
+            for (const u32 triangle : pair) scene_.intersecting[triangle] = 1;
+        scene_.summary += fmt::format(", {}", counted(found.count, "intersection", "intersections"));
+    }
+
+    const RenderParams& params_;
+    Context& context_;
+    DrawnScene scene_;
+};
+
+}  // namespace
+
+Array<Vec3> DrawnScene::extent() const {
+    Array<Vec3> positions;
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle) positions.push_back(mesh.positions[vertex]);
+    for (const Disc& disc : discs) positions.push_back(disc.centre);
+    for (const DrawnLine& line : lines) {
+        positions.push_back(line.from);
+        positions.push_back(line.to);
+    }
+    for (const DrawnDot& dot : dots) positions.push_back(dot.position);
+    return positions;
+}
+
+DrawnScene make_scene(const RenderInputs& inputs, const RenderParams& params, Context& context) {
+    return SceneMaker(params, context).scene(inputs);
+}
+
+}  // namespace scanmill
