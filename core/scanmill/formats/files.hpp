@@ -77,7 +77,7 @@ bool can_write(std::string_view extension, Kind kind);
 /// extension.
 std::string why_unusable(std::string_view extension);
 
-/// Names of the kinds that read_file() returns: points, mesh, and the kinds with a JSON form.
+/// Names of the kinds that a workflow's input can have: points, mesh, and the kinds with a JSON form.
 std::vector<std::string> readable_kinds();
 /// The extensions that can_write(), for messages: "ply, stl, off, obj". Empty for kinds that no format carries.
 std::string writable_extensions(Kind kind);

@@ -42,7 +42,7 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
         const auto at_start = [&](const std::string& text) { return head.starts_with(text); };
         return std::ranges::any_of(begins, at_start) ? Recognition::certain : Recognition::no;
     };
-    row.memory_per_byte = 8;  // of PCD, the only format of a module that is read
+    row.memory_per_byte = 8;  // of PCD; too low for PNG, which is compressed, as for gzip data
     row.is_refused = !spec.reads;
     if (spec.reads)
         row.read = [module](const FileBytes& file, const ReadOptions& options) {

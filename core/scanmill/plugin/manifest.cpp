@@ -69,16 +69,53 @@ AnyManifest parsed(std::string_view text, const char* version_key) try {
     throw_mismatch(mismatch, "is not a manifest");
 }
 
+/// The bytes as a text in which each byte is the character of its number, because JSON has texts only.
+std::string text_of_bytes(std::string_view bytes) {
+    std::string text;
+    for (const char each : bytes) {
+        const auto byte = static_cast<unsigned char>(each);
+        if (byte < 0x80) {
+            text += each;
+        } else {
+            text += static_cast<char>(0xC0 | byte >> 6);
+            text += static_cast<char>(0x80 | (byte & 0x3F));
+        }
+    }
+    return text;
+}
+
+/// The inverse of text_of_bytes(). Throws Error for a character beyond 255. Pre: `text` is valid UTF-8.
+std::string bytes_of_text(std::string_view text) {
+    std::string bytes;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        if (lead < 0x80) {
+            bytes += text[i];
+        } else if (lead <= 0xC3) {
+            bytes += static_cast<char>(lead << 6 | (static_cast<unsigned char>(text[++i]) & 0x3F));
+        } else {
+            throw Error("is not a manifest: 'begins' has a character beyond U+00FF; each character is one byte");
+        }
+    }
+    return bytes;
+}
+
 }  // namespace
 
 std::string to_json_text(const Manifest& manifest) { return text_of(manifest, filter_key); }
-std::string to_json_text(const FormatManifest& manifest) { return text_of(manifest, format_key); }
+
+std::string to_json_text(const FormatManifest& manifest) {
+    FormatManifest written = manifest;
+    for (std::string& beginning : written.spec.begins) beginning = text_of_bytes(beginning);
+    return text_of(written, format_key);
+}
 
 Manifest parse_manifest(std::string_view text) { return parsed<Manifest>(text, filter_key); }
 
 FormatManifest parse_format_manifest(std::string_view text) {
     auto manifest = parsed<FormatManifest>(text, format_key);
     if (manifest.spec.name.empty() || manifest.spec.extensions.empty()) throw Error("names no format, or no extension");
+    for (std::string& beginning : manifest.spec.begins) beginning = bytes_of_text(beginning);
     return manifest;
 }
 

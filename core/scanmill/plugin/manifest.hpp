@@ -27,7 +27,8 @@ struct FormatSpec {
     std::string name;  ///< "PCD"
     /// Lower case, without the dot. The first extension is proposed to users.
     std::vector<std::string> extensions;
-    /// Beginnings of files: a file with one of these beginnings is certainly of this format.
+    /// Beginnings of files: a file with one of these beginnings is certainly of this format. In the manifest, each
+    /// character of a beginning is one byte, U+0000 to U+00FF.
     std::vector<std::string> begins;
     std::vector<Kind> writes;
     /// False for a format that is only written, for other programs.

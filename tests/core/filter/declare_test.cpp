@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/filter/declared_params.hpp"
+#include "support/thrown.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -100,6 +101,85 @@ TEST(Declare, Constraints_AreRecorded) {
     EXPECT_THAT(parameter(declared, "rule").choices,
                 ElementsAre(Choice{"nearest", "The nearest."}, Choice{"random", "Any of them."},
                             Choice{"densest", "The densest."}));
+}
+
+struct ViewParams {
+    std::vector<Rule> rules{Rule::random, Rule::densest};
+    std::size_t pixels = 640;
+};
+
+Declare<ViewParams> drawing_declaration() {
+    using P = ViewParams;
+    return Declare<P>("draw", 1)
+        .summary("Draws a value.")
+        .source("Hand-made")
+        .ties("There are none.")
+        .not_finite(help)
+        .in<TriangleMesh, PointCloud>("scene", help)
+        .in<TriangleMesh>("more", help, optional)
+        .in<PointCloud>("others", help, list)
+        .out<Picture>("picture", help)
+        .out<TriangleMesh>("mesh", help)
+        .choices("rules", &P::rules,
+                 {{"nearest", Rule::nearest, "The nearest."},
+                  {"random", Rule::random, "Any of them."},
+                  {"densest", Rule::densest, "The densest."}},
+                 help)
+        .draws("scene");
+}
+
+TEST(Declare, ListOfChoices_HasItsChoicesAndDefaults) {
+    const FilterDeclaration declared = drawing_declaration();
+    const ParameterSpec& rules = parameter(declared, "rules");
+    using List = std::vector<ParameterScalar>;
+    EXPECT_EQ(rules.type, ParameterType::choice);
+    EXPECT_TRUE(rules.list);
+    EXPECT_EQ(rules.default_value, ParameterValue(List{std::string("random"), std::string("densest")}));
+    EXPECT_THAT(rules.choices, ElementsAre(Choice{"nearest", "The nearest."}, Choice{"random", "Any of them."},
+                                           Choice{"densest", "The densest."}));
+    EXPECT_NO_THROW(require_sound(declared.spec));
+    EXPECT_EQ(parse(rules, {{"densest", "nearest"}, true}),
+              ParameterValue(List{std::string("densest"), std::string("nearest")}));
+    EXPECT_THAT(sentence_of([&] { parse(rules, {{"densest", "near"}, true}); }), testing::HasSubstr("'near'"));
+}
+
+TEST(Declare, ListOfChoices_ReachesItsMember) {
+    std::vector<Rule> seen;
+    const FilterDeclaration declared =
+        drawing_declaration().run([&](const Inputs&, const ViewParams& params, Context&) -> Outputs {
+            seen = params.rules;
+            return {};
+        });
+    Context context;
+    declared.run({}, {}, context);
+    EXPECT_THAT(seen, ElementsAre(Rule::random, Rule::densest)) << "the defaults";
+    using List = std::vector<ParameterScalar>;
+    const List three{std::string("densest"), std::string("nearest"), std::string("densest")};
+    declared.run({}, {{{"rules", three}}}, context);
+    EXPECT_THAT(seen, ElementsAre(Rule::densest, Rule::nearest, Rule::densest));
+    declared.run({}, {{{"rules", List{}}}}, context);
+    EXPECT_THAT(seen, ElementsAre());
+}
+
+TEST(Declare, DrawnInput_IsInTheSpecification) {
+    const FilterSpec spec = FilterDeclaration(drawing_declaration()).spec;
+    EXPECT_EQ(spec.draws, DrawSpec{"scene"});
+    EXPECT_FALSE(FilterDeclaration(declaration()).spec.draws);
+}
+
+TEST(Declare, DrawnInputThatIsMissingOptionalOrAList_IsUnsound) {
+    for (const char* input : {"scen", "more", "others"}) {
+        FilterSpec spec = FilterDeclaration(drawing_declaration()).spec;
+        spec.draws = DrawSpec{input};
+        EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("a required input of one value"))
+            << input;
+    }
+}
+
+TEST(Declare, DrawingFilterWhoseFirstOutputIsNotAPicture_IsUnsound) {
+    FilterSpec spec = FilterDeclaration(drawing_declaration()).spec;
+    std::swap(spec.outputs[0], spec.outputs[1]);
+    EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("first output must be a picture"));
 }
 
 }  // namespace

@@ -29,11 +29,15 @@ TEST(JsonForms, Motions_KeepEveryBit) {
     motion.translation = Vec3(0.1 + 0.2, -1. / 3, 5e-324);
     motion.unit = LengthUnit::inch;
     motion.from = "scan";
+    motion.rms = 0.1;
     const auto read = from_json<RigidTransform>(json_from_cbor(cbor_of(json_of(motion)), "it"));
     EXPECT_EQ(read.rotation, motion.rotation);
     EXPECT_EQ(read.translation, motion.translation);
     EXPECT_EQ(read.unit, motion.unit);
     EXPECT_EQ(read.from, "scan");
+    EXPECT_EQ(read.rms, 0.1);
+    motion.rms.reset();
+    EXPECT_EQ(from_json<RigidTransform>(json_of(motion)).rms, std::nullopt);
 }
 
 TEST(JsonForms, Metrics_AreReadBackEqual_AndShownByName) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/shapes.hpp"
+#include "support/thrown.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -33,6 +34,7 @@ TEST(Kind, EveryKind_HasItsNameItsTypeAndMaybeAFrame) {
     expect_kind<ProbePlan>(kind_of<ProbePlan>(), "probes", true);
     expect_kind<RigidTransform>(kind_of<RigidTransform>(), "transform", false);
     expect_kind<Metrics>(kind_of<Metrics>(), "metrics", false);
+    expect_kind<Picture>(kind_of<Picture>(), "picture", false);
 }
 
 TEST(Kind, UnknownName_IsNoKind) {
@@ -97,6 +99,21 @@ TEST(FrameOf, Geometry_IsItsFrame) {
     const Value value = value_of(cloud);
     ASSERT_TRUE(frame_of(value));
     EXPECT_EQ(*frame_of(value), far_away);
+}
+
+TEST(PictureKind, PropertiesAreItsSize_AndEveryPixelIsRequired) {
+    Picture picture{3, 2, Array<Colour>(6, Colour{1, 2, 3}), "Two rows"};
+    const Metrics properties = properties_of(value_of(picture));
+    ASSERT_NE(properties.find("width"), nullptr);
+    EXPECT_EQ(properties.find("width")->value, 3);
+    EXPECT_EQ(properties.find("height")->value, 2);
+    const auto refusal = [](const Picture& each) {
+        return sentence_of([&] { kind_of<Picture>().info().require_usable(&each); });
+    };
+    EXPECT_NO_THROW(kind_of<Picture>().info().require_usable(&picture));
+    picture.height = 3;
+    EXPECT_EQ(refusal(picture), "the picture has 6 pixels; expected 3 x 3 = 9");
+    EXPECT_EQ(refusal(Picture{4, 0, {}, ""}), "the picture is empty: 4 x 0 pixels");
 }
 
 TEST(RigidTransform, Apply_RotatesThenTranslates) {

@@ -38,6 +38,20 @@ TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
     EXPECT_NE(written.spec, abc_manifest.spec);
 }
 
+TEST(FormatManifest, BeginningsOfAnyBytes_ComeBackTheSame) {
+    FormatManifest binary = abc_manifest;
+    std::string every_byte;
+    for (int byte = 0; byte < 256; ++byte) every_byte += static_cast<char>(byte);
+    binary.spec.begins = {"\x89PNG\r\n", every_byte};
+    EXPECT_EQ(parse_format_manifest(to_json_text(binary)).spec, binary.spec);
+}
+
+TEST(FormatManifest, BeginningWithACharacterThatIsNotAByte_IsRefused) {
+    std::string text = to_json_text(abc_manifest);
+    text.replace(text.find("#ABC"), 4, "\u0100");
+    EXPECT_THAT(sentence_of([&] { parse_format_manifest(text); }), HasSubstr("beyond U+00FF"));
+}
+
 TEST(FormatManifest, AnythingElse_IsRefused) {
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is not a manifest"));
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));

@@ -38,7 +38,7 @@ Manifest everything() {
     spec.ties = "The first of equals stays.";
     spec.not_finite = "Refused with their number.";
     for (const Kind kind : {kind_of<PointCloud>(), kind_of<TriangleMesh>(), kind_of<TetMesh>(), kind_of<FeatureGraph>(),
-                            kind_of<RigidTransform>(), kind_of<Metrics>()})
+                            kind_of<RigidTransform>(), kind_of<Metrics>(), kind_of<Picture>()})
         spec.outputs.push_back({std::string(name_of(kind)), kind, "Gives one of these.", false, false});
     spec.inputs = {
         {"plain", kind_of<PointCloud>(), "Takes points.", false, false},
@@ -124,6 +124,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].better = Better::smaller; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.outputs[0].by_name = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.measures = MeasureSpec{"mesh", "truth"}; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.draws = DrawSpec{"plain"}; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.adds.push_back("bin-size"); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
@@ -143,6 +144,14 @@ TEST(Manifest, Stream_ReadsBackEqual) {
         json["streams"] = wrong;
         EXPECT_THAT(sentence_of([&] { parse_manifest(json.dump()); }), StartsWith("is not a manifest")) << wrong;
     }
+}
+
+TEST(Manifest, DrawingFilter_ReadsBackEqual) {
+    Manifest manifest = everything();
+    manifest.spec.outputs = {{"picture", kind_of<Picture>(), "Shows the value.", false, false}};
+    manifest.spec.draws = DrawSpec{"either"};
+    ASSERT_NO_THROW(require_sound(manifest.spec));
+    EXPECT_EQ(parse_manifest(to_json_text(manifest)), manifest);
 }
 
 TEST(Manifest, Text_IsIndentedAndEndsTheLine) {

@@ -30,7 +30,7 @@ struct ReadOptions {
 };
 
 struct LoadedFile {
-    /// A PointCloud or a TriangleMesh, whichever the file holds; never null, never without points.
+    /// The value that the file holds; never null. A PointCloud or a TriangleMesh has points.
     Value value;
     std::string format;  ///< "PLY"
     std::string encoding;  ///< "binary little-endian", "ascii"

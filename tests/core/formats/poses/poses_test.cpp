@@ -164,6 +164,23 @@ TEST_F(PoseFiles, JsonMatrixOfSevenDigits_IsMadeOrthonormal) {
     EXPECT_NEAR(r(0, 0), std::sqrt(0.75), 1e-7);
 }
 
+TEST_F(PoseFiles, Rms_IsKept) {
+    const std::vector<ScanPose> poses =
+        read(json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0], \"rms\": 0.125}, "
+                  "{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0], \"rms\": 0}, "
+                  "{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}"));
+    ASSERT_EQ(poses.size(), 3u);
+    EXPECT_EQ(poses[0].transform.rms, 0.125);
+    EXPECT_EQ(poses[1].transform.rms, 0.0);
+    EXPECT_EQ(poses[2].transform.rms, std::nullopt);
+}
+
+TEST_F(PoseFiles, NegativeRms_IsRefusedWithItsPose) {
+    EXPECT_EQ(sentence(json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}, "
+                            "{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0], \"rms\": -0.5}")),
+              "pose 2: 'rms' is -0.5; expected a length of at least 0");
+}
+
 TEST_F(PoseFiles, JsonMatrixThatIsNoMotion_IsRefusedWithWhatItIs) {
     const auto matrix = [&](const std::string& rows) { return sentence(json("{\"matrix\": [" + rows + "]}")); };
     EXPECT_THAT(matrix("[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]"), HasSubstr("'poses[0].matrix' is not a list of 4"));
