@@ -12,6 +12,7 @@
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/plan/pictures.hpp"
 #include "scanmill/plugin/module.hpp"
 #include "scanmill/workflow/ready.hpp"
 #include "scanmill/workflow/sizes.hpp"
@@ -38,10 +39,11 @@ const FilterSpec& find_filter(const FilterLibrary& library, const std::string& n
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
-                               const Settings& settings) {
+                               const Settings& settings, bool has_picture) {
     Diagnostics diagnostics(file);
     Workflow workflow = parse_workflow(text, diagnostics);
-    Plan plan = make_plan(std::move(workflow), library, settings, diagnostics);
+    Plan plan = has_picture ? make_plan_with_picture(std::move(workflow), library, settings, diagnostics)
+                            : make_plan(std::move(workflow), library, settings, diagnostics);
     return {std::move(diagnostics), std::move(plan)};
 }
 

@@ -27,9 +27,10 @@ struct CheckedWorkflow {
 
 using Warn = std::function<void(std::string)>;
 
-/// Checks the workflow in `text`, the content of `file`.
+/// Checks the workflow in `text`, the content of `file`. With `has_picture`, the plan is that of
+/// make_plan_with_picture().
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
-                               const Settings& settings);
+                               const Settings& settings, bool has_picture = false);
 
 /// Parses the NAME=VALUE pairs of --set. Throws Error for any other text.
 Settings parse_settings(const std::vector<std::string>& pairs);

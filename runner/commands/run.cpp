@@ -40,6 +40,7 @@ struct ExecuteOptions {
 struct RunOptions {
     std::string workflow;
     std::vector<std::string> scans, inputs, settings;
+    bool has_picture = false;
     RunRequest request;
     ExecuteOptions execute;
 };
@@ -318,7 +319,7 @@ int run_workflow(const RunOptions& options) {
     if (is_batch(text))
         throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + options.workflow);
     const CheckedWorkflow checked =
-        check_workflow(workflow, text, execution.library(), parse_settings(options.settings));
+        check_workflow(workflow, text, execution.library(), parse_settings(options.settings), options.has_picture);
     if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
     RunRequest request = options.request;
@@ -420,6 +421,8 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     add_list("--only", options.request.only, "Run only this variant (may be repeated)");
     run.add_option("--until", options.request.until, "Stop after this step");
     add_list("--save", options.request.save, "Also write this step's result, STEP or STEP.PORT (may be repeated)");
+    run.add_flag("--picture", options.has_picture,
+                 "Also write a picture (PNG) of the last surface among the outputs, beside it");
     add_execute_options(run, options.execute);
     run.add_flag("--json", options.execute.json, "Print the report as JSON");
 

@@ -26,12 +26,13 @@ bool is_unprintable(const std::string& text) {
 /// Options of `run` that take a value and affect results.
 constexpr std::array<std::string_view, 6> deciding{"--in", "--set", "--unit", "--invalid", "--until", "--save"};
 
-/// The options in `deciding` of the recorded command line, each with its value.
+/// The options in `deciding` of the recorded command line, each with its value, and the flag `--picture`.
 std::string deciding_options(const std::vector<std::string>& arguments) {
     std::string options;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const std::string name = arguments[i].substr(0, arguments[i].find('='));
         if (arguments[i] == "--") break;
+        if (name == "--picture") options += " --picture";
         if (std::ranges::find(deciding, name) == deciding.end()) continue;
         options += " " + quoted_word(arguments[i]);
         if (name == arguments[i] && i + 1 < arguments.size()) options += " " + quoted_word(arguments[++i]);

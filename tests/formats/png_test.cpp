@@ -166,22 +166,22 @@ TEST(Png, Content_DecidesTheFormat) {
 
 TEST(Png, EveryImageFormat_IsReadAsRgb) {
     const std::array<u8, 2> grey{10, 200};
-    EXPECT_THAT(read_picture(encoded(2, 1, PNG_FORMAT_GRAY, grey.data()))->pixels,
+    EXPECT_THAT(rows_of(read_picture(encoded(2, 1, PNG_FORMAT_GRAY, grey.data()))->pixels),
                 ElementsAre(Colour{10, 10, 10}, Colour{200, 200, 200}));
     const std::array<u8, 6> rgb{1, 2, 3, 4, 5, 6};
-    EXPECT_THAT(read_picture(encoded(2, 1, PNG_FORMAT_RGB, rgb.data()))->pixels,
+    EXPECT_THAT(rows_of(read_picture(encoded(2, 1, PNG_FORMAT_RGB, rgb.data()))->pixels),
                 ElementsAre(Colour{1, 2, 3}, Colour{4, 5, 6}));
 }
 
 TEST(Png, Alpha_IsLeftOutWithAWarningThatCountsPixels) {
     const std::array<u8, 12> rgba{1, 2, 3, 255, 4, 5, 6, 128, 7, 8, 9, 0};
     Warnings warnings;
-    EXPECT_THAT(read_picture(encoded(3, 1, PNG_FORMAT_RGBA, rgba.data()), &warnings)->pixels,
+    EXPECT_THAT(rows_of(read_picture(encoded(3, 1, PNG_FORMAT_RGBA, rgba.data()), &warnings)->pixels),
                 ElementsAre(Colour{1, 2, 3}, Colour{4, 5, 6}, Colour{7, 8, 9}));
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 pixels are not opaque")));
     const std::array<u8, 4> grey{9, 255, 8, 255};
     warnings.sentences.clear();
-    EXPECT_THAT(read_picture(encoded(2, 1, PNG_FORMAT_GA, grey.data()), &warnings)->pixels,
+    EXPECT_THAT(rows_of(read_picture(encoded(2, 1, PNG_FORMAT_GA, grey.data()), &warnings)->pixels),
                 ElementsAre(Colour{9, 9, 9}, Colour{8, 8, 8}));
     EXPECT_THAT(warnings.sentences, IsEmpty());
 }

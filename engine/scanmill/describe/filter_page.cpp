@@ -90,6 +90,7 @@ std::string remarks(const FilterSpec& spec) {
     if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
     if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
     if (spec.measures) list += fmt::format("- Measures: {}\n", measures_text(*spec.measures));
+    if (spec.draws) list += fmt::format("- Draws: {}\n", draws_text(*spec.draws));
     if (!spec.adds.empty()) list += fmt::format("- Columns that it may add: `{}`\n", fmt::join(spec.adds, "`, `"));
     return list.empty() ? list : "\n" + list;
 }
@@ -193,6 +194,13 @@ std::string measures_text(const MeasureSpec& measures) {
         "Compares the value at `{}` with the truth at `{}`; a batch applies the filter to the results of scans with a "
         "truth.",
         measures.value, measures.truth);
+}
+
+std::string draws_text(const DrawSpec& draws) {
+    return fmt::format(
+        "Without `in`, `{}` takes the last geometric value before the step. The step also runs if this value misses a "
+        "condition of `expect`.",
+        draws.value);
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

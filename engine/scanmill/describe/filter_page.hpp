@@ -27,5 +27,7 @@ bool is_filter_page(std::string_view text);
 std::string stream_text(const FilterSpec& spec);
 /// A text that names the input port of the measured value and that of the truth.
 std::string measures_text(const MeasureSpec& measures);
+/// A text that names the input port of the drawn value.
+std::string draws_text(const DrawSpec& draws);
 
 }  // namespace scanmill

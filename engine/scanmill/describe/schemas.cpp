@@ -242,9 +242,12 @@ Json value_schema(const ParameterSpec& parameter, Json item) {
     return value;
 }
 
+/// The schema that `$name` matches.
+Json parameter_reference() { return {{"type", "string"}, {"pattern", R"(^\$[A-Za-z])"}}; }
+
 /// The schema of a value, `$name` or `{sweep: […]}`. Its description contains the parameter's help, range and default.
 Json parameter_schema(const ParameterSpec& parameter) {
-    const Json reference{{"type", "string"}, {"pattern", R"(^\$[A-Za-z])"}};
+    const Json reference = parameter_reference();
     const Json value = either(reference, Json::object(),
                               value_schema(parameter, either(reference, Json::object(), scalar_schema(parameter))));
     const Json sweep{{"description", "Runs this step and all later steps once for each value."},
@@ -294,13 +297,15 @@ Json in_schema(const FilterSpec& spec) {
 
 Json expect_schema(const FilterSpec& spec) {
     Json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+    const Json reference = parameter_reference();
     for (const MetricSpec& metric : expectable(spec)) {
         const int power = power_of_length(metric.unit);
         const std::string digit = std::to_string(power);
-        const Json value =
+        const Json number =
             power > 1 ? text_with_unit({}, fmt::format("({})(\\^?{}|{})", length_units, power, power == 2 ? "²" : "³"),
                                        length_power_examples(power), {"12 mm" + digit, "0.5 u" + digit})
                       : scalar_schema(written_as(metric.unit));
+        const Json value = either(reference, Json::object(), number);
         Json expected =
             either({{"type", "array"}}, list_of(value, 2),
                    either({{"type", "string"}, {"pattern", "^[<>]"}}, {{"pattern", "^[<>] *[^<>= ]"}}, value));

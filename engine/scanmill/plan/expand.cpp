@@ -199,8 +199,8 @@ std::string excess(const Workflow& workflow, const Settings& settings) {
                                     : "";
 }
 
-/// Checks that every `$name` and every setting is a declared parameter. A `$name` within a list must be a single value.
-/// Warns about declared parameters that the file does not use.
+/// Checks that every `$name` and every setting is a declared parameter. A `$name` within a list must be a single value,
+/// and one under `expect` must not be swept. Warns about declared parameters that the file does not use.
 class ReferenceCheck {
 public:
     ReferenceCheck(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
@@ -211,6 +211,7 @@ public:
             const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
             const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
             if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
+            if (given.sweep) swept_.insert(parameter.name);
             if (!workflow.mentions.contains(parameter.name))
                 diagnostics_.warning(parameter.position,
                                      fmt::format("no step uses the parameter '{}'", parameter.name));
@@ -231,6 +232,7 @@ private:
                 for (const AlternativeSyntax& alternative : fork->alternatives) check(alternative.steps);
                 continue;
             }
+            check(std::get<StepSyntax>(item.item).expect);
             for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
                 for (const WrittenValue& written : parameter.value.values)
                     for (const NameUse& use : written.uses) {
@@ -244,9 +246,25 @@ private:
         }
     }
 
+    /// Variants may share a step, so its conditions cannot depend on the variant.
+    void check(const std::vector<Expectation>& expectations) {
+        for (const Expectation& expectation : expectations)
+            for (const NameUse& use : expectation.uses) {
+                require_declared(use.name, use.position);
+                if (lists_.contains(use.name))
+                    diagnostics_.error(use.position, "expect {}: ${} is a list; a condition needs a single value",
+                                       expectation.name, use.name);
+                else if (swept_.contains(use.name))
+                    diagnostics_.error(use.position,
+                                       "expect {}: ${} is swept, and variants share the condition; expected a "
+                                       "parameter with one value",
+                                       expectation.name, use.name);
+            }
+    }
+
     Diagnostics& diagnostics_;
     const std::vector<WorkflowParameter>& parameters_;
-    std::set<std::string> lists_;
+    std::set<std::string> lists_, swept_;
 };
 
 /// An alternative with the name of an earlier one of the same fork; null if there is none.

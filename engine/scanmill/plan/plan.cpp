@@ -182,10 +182,25 @@ private:
         for (const Expectation& written : step.syntax->expect) {
             if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
                 continue;  // already planned or reported for an earlier variant
-            if (auto expectation = plan_expectation(written, spec, diagnostics_))
+            const std::optional<Expectation> complete = with_values(written);
+            if (!complete) continue;
+            if (auto expectation = plan_expectation(*complete, spec, diagnostics_))
                 expectations.push_back(std::move(*expectation));
         }
         return found->second;
+    }
+
+    /// The expectation with a value for every `$name`. Nothing if a name has no single value, which expand() reports.
+    std::optional<Expectation> with_values(Expectation expectation) const {
+        for (const NameUse& use : expectation.uses) {
+            const auto parameter = std::ranges::find(plan_.workflow.parameters, use.name, &WorkflowParameter::name);
+            if (parameter == plan_.workflow.parameters.end()) return std::nullopt;
+            const auto setting = settings_->find(use.name);
+            const ValueExpression& given = setting != settings_->end() ? setting->second : parameter->value;
+            if (given.sweep || given.values.size() != 1 || given.values.front().literal.list) return std::nullopt;
+            (use.item == 0 ? expectation.value : expectation.high) = given.values.front().literal.items.front();
+        }
+        return expectation;
     }
 
     std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
@@ -202,6 +217,7 @@ private:
     }
 
     void plan_output(const WorkflowOutput& output, const WiringScope& scope, PlannedVariant& variant) {
+        if (output.may_be_left_out && !scope.steps_by_name.contains(output.source.text)) return;
         const std::optional<ValueSource> source = resolve(output.source, scope, diagnostics_);
         if (!source) return;
         if (!source->step && plan_.workflow.inputs[source->input].list) {

@@ -38,7 +38,9 @@ public:
         check_ports();
         std::vector<PlannedInput> inputs;
         for (const PortSpec& port : spec_.inputs) {
-            std::vector<ValueSource> sources = is_given(port) ? given(port) : nearest(port);
+            std::vector<ValueSource> sources = is_given(port)    ? given(port)
+                                               : is_drawn(port) ? last_drawable(port)
+                                                                : nearest(port);
             if (!sources.empty()) inputs.push_back({port.name, std::move(sources)});
         }
         return inputs;
@@ -93,6 +95,29 @@ private:
             return false;
         }
         return true;
+    }
+
+    bool is_drawn(const PortSpec& port) const { return spec_.draws && spec_.draws->value == port.name; }
+
+    /// The last geometric value before the step that the port takes. Other outputs than the first of a step, and values
+    /// that feed only ports that name them, do not count.
+    std::vector<ValueSource> last_drawable(const PortSpec& port) {
+        const auto is_drawable = [&](Kind kind) { return is_geometric(kind) && port.takes(kind); };
+        for (auto step = scope_.earlier.rbegin(); step != scope_.earlier.rend(); ++step) {
+            const PortSpec& output = scope_.plan.steps[*step].spec.outputs.front();
+            if (is_drawable(output.kind) && !output.by_name) return {{*step, 0, output.name}};
+        }
+        const std::vector<WorkflowInput>& inputs = scope_.plan.workflow.inputs;
+        const auto input = std::ranges::find_if(inputs, [&](const WorkflowInput& each) {
+            return is_drawable(each.kind) && !each.by_name && !each.list;
+        });
+        if (input != inputs.end()) return {{std::nullopt, static_cast<std::size_t>(input - inputs.begin()), ""}};
+        if (!scope_.uncertain)
+            diagnostics_.error(step_.position,
+                               "{} draws {}, and neither an earlier step nor an input gives any; expected a step that "
+                               "does, or `in: {{{}: …}}`",
+                               spec_.name, kinds_text(port), port.name);
+        return {};
     }
 
     std::vector<ValueSource> nearest(const PortSpec& port) {

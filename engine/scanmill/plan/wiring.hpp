@@ -5,6 +5,10 @@
 /// `in` takes precedence. A port that `in` does not name takes the nearest earlier value of its kind, or else the
 /// workflow input of that kind. Two equally near values are an error, whose message asks for `in`. An optional port
 /// that shares its kind with an earlier port is wired only by `in`.
+///
+/// A port of several kinds is wired only by `in`. The port of the value that a filter draws takes the last geometric
+/// value: the first output of the nearest earlier step whose first output the port takes, or else the first workflow
+/// input that the port takes.
 
 #include "scanmill/plan/plan.hpp"
 

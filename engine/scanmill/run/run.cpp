@@ -86,7 +86,7 @@ private:
         pending,
         running,
         done,
-        unmet,  ///< failed by an expectation: its outputs are written, but no step takes them
+        unmet,  ///< failed by an expectation: its outputs are drawn and written, but no other step takes them
         failed,
         skipped
     };
@@ -165,10 +165,16 @@ private:
     }
 
     /// Whether the task must not start: its cells are out of time, or a task failed and RunSettings::fail_fast is set.
-    /// Outputs that show why a cell failed are written even then.
+    /// Outputs that show why a cell failed are drawn and written even then.
     bool is_dropped(const Task& task) const {
         if (!cells_.have_time(cells_of(task))) return true;
-        return has_failed_ && (task.write == 0 || !cells_.are_unmet(cells_of(task)));
+        return has_failed_ && !(takes_unmet(task) && cells_.are_unmet(cells_of(task)));
+    }
+
+    /// Whether the task takes values that are not as expected: it writes or draws them, which shows why the cell failed.
+    bool takes_unmet(const Task& task) const {
+        const PlannedStep* step = graph_.step(graph_.nodes[task.node]);
+        return task.write > 0 || (step && step->spec.draws);
     }
 
     /// Makes the task ready, lets it wait for a node, or skips it.
@@ -182,7 +188,7 @@ private:
             for (const NodeInput& input : graph_.nodes[task.node].inputs) prerequisites.push_back(input.node);
         for (const std::size_t index : prerequisites) {
             NodeState& from = nodes_[index];
-            if (from.state == State::unmet && task.write > 0) continue;
+            if (from.state == State::unmet && takes_unmet(task)) continue;
             if (from.state >= State::unmet) return skip(task);
             if (from.state != State::done) {
                 from.waiting.push_back(task);

@@ -90,6 +90,7 @@ public:
                      diagnostics_);
         for (const char* key : {"steps", "outputs"})
             if (const YamlNode* part = root.find(key)) add_mentions(*part, workflow.mentions);
+        workflow.mentions.merge(expected_);
         return workflow;
     }
 
@@ -308,7 +309,26 @@ private:
         if (text.starts_with('>')) expectation.relation = Expectation::Relation::above;
         if (expectation.relation != Expectation::Relation::equal) text.remove_prefix(1);
         while (text.starts_with(' ')) text.remove_prefix(1);
-        expectation.value = text;
+        return read_end(text, position, 0, expectation);
+    }
+
+    /// Reads an end of a condition, a literal or `$name`; false after an error.
+    bool read_end(std::string_view text, Position position, std::size_t item, Expectation& expectation) {
+        std::string& end = item == 0 ? expectation.value : expectation.high;
+        if (text == "$") {
+            diagnostics_.error(position,
+                               "expect {}: '$' is not the name of a parameter; expected $name, or $$ for the text '$'",
+                               expectation.name);
+            return false;
+        }
+        if (text.starts_with("$$")) {
+            end = text.substr(1);
+        } else if (text.starts_with('$')) {
+            expectation.uses.push_back({std::string(text.substr(1)), position, item});
+            expected_.insert(expectation.uses.back().name);
+        } else {
+            end = text;
+        }
         return true;
     }
 
@@ -323,8 +343,9 @@ private:
                 if (!text || !read_comparison(*text, entry.value.position, expectation)) continue;
             } else if (ends.size() == 2 && ends[0].is_scalar() && ends[1].is_scalar()) {
                 expectation.relation = Expectation::Relation::between;
-                expectation.value = ends[0].text;
-                expectation.high = ends[1].text;
+                if (!read_end(ends[0].text, ends[0].position, 0, expectation) ||
+                    !read_end(ends[1].text, ends[1].position, 1, expectation))
+                    continue;
             } else {
                 diagnostics_.error(entry.value.position, "a range has two ends, as [2, 4]");
                 continue;
@@ -334,6 +355,7 @@ private:
     }
 
     Diagnostics& diagnostics_;
+    std::set<std::string> expected_;  // names used as `$name` in `expect`
 };
 
 }  // namespace

@@ -60,6 +60,8 @@ struct Expectation {
     Position position;
     Relation relation = Relation::equal;
     std::string value, high;  ///< as written; `high` only for between
+    /// Ends that are a workflow parameter; NameUse::item is 0 for `value` and 1 for `high`, which stay empty.
+    std::vector<NameUse> uses{};
 };
 
 struct StepSyntax {
@@ -119,6 +121,7 @@ struct WorkflowOutput {
     std::string file;  ///< a template
     Position position;
     Reference source;
+    bool may_be_left_out = false;  ///< variants without the step named by `source` omit the output
 };
 
 struct Workflow {

@@ -132,7 +132,7 @@ TEST(FilterLibrary, UnusableManifests_AreRememberedWithTheirReasonAndHarmlessToO
 
 TEST(FilterLibrary, Load_GivesTheModulesDeclarationOnce) {
     FilterLibrary library({plugin_folder});
-    EXPECT_THAT(library.names(), ElementsAre("test-step", "test-stream"));
+    EXPECT_THAT(library.names(), ElementsAre("test-draw", "test-step", "test-stream"));
     const FilterDeclaration& declaration = library.load("test-step");
     EXPECT_TRUE(declaration.run);
     EXPECT_EQ(declaration.spec, *library.find("test-step"));
