@@ -52,8 +52,8 @@ public:
                  count_text(translucent, "pixel is", "pixels are"));
         picture.pixels = std::move(colours);
         picture.caption = caption();
-        const std::string encoding = fmt::format("8-bit {}{}", channels >= 3 ? "RGB" : "grey",
-                                                 channels % 2 == 0 ? " with alpha" : "");
+        const std::string encoding =
+            fmt::format("8-bit {}{}", channels >= 3 ? "RGB" : "grey", channels % 2 == 0 ? " with alpha" : "");
         return {std::make_shared<const Picture>(std::move(picture)), "PNG", encoding, {}};
     }
 

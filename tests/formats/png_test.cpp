@@ -28,9 +28,7 @@ Picture made_picture(u32 width, u32 height) {
     return picture;
 }
 
-std::string png_of(const Picture& picture) {
-    return write_bytes("a.png", std::make_shared<const Picture>(picture));
-}
+std::string png_of(const Picture& picture) { return write_bytes("a.png", std::make_shared<const Picture>(picture)); }
 
 std::shared_ptr<const Picture> read_picture(std::string_view bytes, Warnings* warnings = nullptr) {
     return read_bytes(bytes, "a.png", warnings ? warnings->reading() : ReadOptions{}).value.get<Picture>();
@@ -100,8 +98,7 @@ std::string with_header(std::string bytes, std::size_t offset, std::string_view 
 }
 
 TEST(Png, Pixels_AreThoseThatLibpngDecodes) {
-    for (const auto& [width, height] :
-         {std::pair(1u, 1u), {1u, 5u}, {7u, 1u}, {3u, 2u}, {17u, 13u}, {255u, 255u}}) {
+    for (const auto& [width, height] : {std::pair(1u, 1u), {1u, 5u}, {7u, 1u}, {3u, 2u}, {17u, 13u}, {255u, 255u}}) {
         const Picture picture = made_picture(width, height);
         const Decoded seen = decoded(png_of(picture));
         EXPECT_EQ(seen.width, width);
@@ -160,9 +157,7 @@ TEST(Png, WrittenPicture_ReadsBackEqual) {
     EXPECT_EQ(back->caption, picture.caption);
 }
 
-TEST(Png, Content_DecidesTheFormat) {
-    EXPECT_EQ(read_bytes(png_of(made_picture(2, 2)), "a.ply").format, "PNG");
-}
+TEST(Png, Content_DecidesTheFormat) { EXPECT_EQ(read_bytes(png_of(made_picture(2, 2)), "a.ply").format, "PNG"); }
 
 TEST(Png, EveryImageFormat_IsReadAsRgb) {
     const std::array<u8, 2> grey{10, 200};
@@ -229,11 +224,9 @@ TEST(PngRefusal, HugeSizeInTheHeader_IsRefusedBeforeMemoryIsAllocated) {
 }
 
 TEST(PngRefusal, OtherKinds_AreNotWritten) {
-    const Error error =
-        error_of([] { write_bytes("a.png", std::make_shared<const TriangleMesh>(cube(1))); });
+    const Error error = error_of([] { write_bytes("a.png", std::make_shared<const TriangleMesh>(cube(1))); });
     EXPECT_THAT(error.sentence(), HasSubstr("mesh cannot be written with the extension '.png'"));
-    const Error picture =
-        error_of([] { write_bytes("a.ply", std::make_shared<const Picture>(made_picture(1, 1))); });
+    const Error picture = error_of([] { write_bytes("a.ply", std::make_shared<const Picture>(made_picture(1, 1))); });
     EXPECT_EQ(picture.hint(), "extensions for it: png");
     EXPECT_EQ(writable_extensions(kind_of<Picture>()), "png");
 }

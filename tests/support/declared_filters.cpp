@@ -83,6 +83,15 @@ DeclaredFilters::DeclaredFilters() {
     add(spec(declare<Nothing>("make").in<TriangleMesh>("mesh", help, optional).out<PointCloud>("points", help)));
 }
 
+FilterSpec drawing_filter(std::string name) {
+    return FilterDeclaration(declare<Nothing>(std::move(name))
+                                 .in<TriangleMesh, PointCloud, FeatureGraph>("scene", help)
+                                 .in<Metrics>("scale", help, optional)
+                                 .out<Picture>("picture", help)
+                                 .draws("scene"))
+        .spec;
+}
+
 void DeclaredFilters::add(const FilterSpec& spec) {
     folder_.write("scanmill-" + spec.name + ".json", to_json_text({abi_text(), spec}));
     folder_.write("scanmill-" + spec.name + ".so", "never loaded");

@@ -24,4 +24,7 @@ private:
     TemporaryFolder folder_;
 };
 
+/// A filter that draws: scene (mesh, points or features), scale: metrics? → picture.
+FilterSpec drawing_filter(std::string name);
+
 }  // namespace scanmill::test

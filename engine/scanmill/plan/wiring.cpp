@@ -38,7 +38,7 @@ public:
         check_ports();
         std::vector<PlannedInput> inputs;
         for (const PortSpec& port : spec_.inputs) {
-            std::vector<ValueSource> sources = is_given(port)    ? given(port)
+            std::vector<ValueSource> sources = is_given(port)   ? given(port)
                                                : is_drawn(port) ? last_drawable(port)
                                                                 : nearest(port);
             if (!sources.empty()) inputs.push_back({port.name, std::move(sources)});
@@ -108,9 +108,8 @@ private:
             if (is_drawable(output.kind) && !output.by_name) return {{*step, 0, output.name}};
         }
         const std::vector<WorkflowInput>& inputs = scope_.plan.workflow.inputs;
-        const auto input = std::ranges::find_if(inputs, [&](const WorkflowInput& each) {
-            return is_drawable(each.kind) && !each.by_name && !each.list;
-        });
+        const auto input = std::ranges::find_if(
+            inputs, [&](const WorkflowInput& each) { return is_drawable(each.kind) && !each.by_name && !each.list; });
         if (input != inputs.end()) return {{std::nullopt, static_cast<std::size_t>(input - inputs.begin()), ""}};
         if (!scope_.uncertain)
             diagnostics_.error(step_.position,

@@ -171,7 +171,8 @@ private:
         return has_failed_ && !(takes_unmet(task) && cells_.are_unmet(cells_of(task)));
     }
 
-    /// Whether the task takes values that are not as expected: it writes or draws them, which shows why the cell failed.
+    /// Whether the task takes values that are not as expected: it writes or draws them, which shows why the cell
+    /// failed.
     bool takes_unmet(const Task& task) const {
         const PlannedStep* step = graph_.step(graph_.nodes[task.node]);
         return task.write > 0 || (step && step->spec.draws);

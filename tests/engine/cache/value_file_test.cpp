@@ -47,6 +47,25 @@ TEST_F(ValueFile, EveryKind_ComesBackWithItsContent) {
     }
 }
 
+TEST_F(ValueFile, Picture_ComesBackWithPixelsAndCaption) {
+    const Picture original = picture();
+    const Value back = through_a_file(value(original));
+    const auto& read = as<Picture>(back);
+    EXPECT_EQ(read.width, 3u);
+    EXPECT_EQ(read.height, 2u);
+    EXPECT_TRUE(same_bits(read.pixels, original.pixels));
+    EXPECT_EQ(read.caption, original.caption);
+}
+
+TEST_F(ValueFile, TransformWithoutRms_ComesBackWithoutIt) {
+    RigidTransform original = transform();
+    EXPECT_EQ(as<RigidTransform>(through_a_file(value(original))).rms, 0.1 + 0.2);
+    const std::string with = key_of(value(original));
+    original.rms.reset();
+    EXPECT_EQ(as<RigidTransform>(through_a_file(value(original))).rms, std::nullopt);
+    EXPECT_NE(key_of(value(original)), with);
+}
+
 TEST_F(ValueFile, Points_ComeBackBitByBit) {
     const PointCloud original = cloud();
     const Value back = through_a_file(value(original));

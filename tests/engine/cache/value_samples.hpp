@@ -108,6 +108,7 @@ inline RigidTransform transform() {
     transform.translation = Vec3(0.1, 1e300, -0.0);
     transform.unit = LengthUnit::inch;
     transform.from = "a";
+    transform.rms = 0.1 + 0.2;
     return transform;
 }
 
@@ -115,9 +116,11 @@ inline Metrics metrics() {
     return {{{"rms", nan, Unit::length}, {"faces", 1e17, Unit::count}, {"gap", -infinity, Unit::ratio}}};
 }
 
+inline Picture picture() { return {3, 2, Array<Colour>(6, Colour{0, 255, 7}), "A \xff caption\n\"of\" two lines"}; }
+
 inline std::vector<Value> one_of_each_kind() {
-    return {value(cloud()),   value(mesh()),   value(tets()),      value(features()),
-            value(patches()), value(probes()), value(transform()), value(metrics())};
+    return {value(cloud()),  value(mesh()),      value(tets()),    value(features()), value(patches()),
+            value(probes()), value(transform()), value(metrics()), value(picture())};
 }
 
 /// The hash of everything that the value holds.

@@ -51,6 +51,8 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
           with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"), with_n("  - thin: {axis: [$n, 0, $n]}\n"),
           with_n("  - thin: {axis: {sweep: [[$n, 0, 1], [1, 0, 0]]}}\n"),
           with_n("  - thin: {count: {sweep: [1, $n, 9]}}\n    expect: {kept: '> 3', points: [1, 9]}\n"),
+          with_n("  - thin:\n    expect: {kept: '> $n', points: [1, $n]}\n"),
+          with_n("  - thin:\n    expect: {kept: $n}\n"),
           with_n("  - thin: {count: $n}\n  - tetrahedralise:\n  - solid: {alpha: auto, coverage: 0.5, angle: 0 deg}\n"
                  "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg, volume: [-2 mm3, 3 cm³], skin: 2 "
                  "u^2}\n"),

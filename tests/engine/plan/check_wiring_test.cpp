@@ -78,5 +78,104 @@ TEST_F(CheckWiring, ListInput_FeedsOnlyListPorts) {
                 ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("unknown placeholder"))));
 }
 
+/// With a filter `draw`: scene (mesh, points or features), scale: metrics? → picture.
+class DrawingWiring : public test::WorkflowFindings {
+protected:
+    DrawingWiring() {
+        filters_.add(test::drawing_filter("draw"));
+        FilterSpec list = test::drawing_filter("named");
+        list.draws.reset();
+        list.outputs.front() = {"mesh", kind_of<TriangleMesh>(), "All.", false, false};
+        list.outputs.front().by_name = true;
+        filters_.add(list);
+        library_ = filters_.library();
+    }
+    /// The source of the scene in the last step.
+    std::string drawn() const { return describe(plan_, plan_.steps.back().inputs.front().sources.front()); }
+};
+
+TEST_F(DrawingWiring, WithoutIn_TheLastGeometricValueIsDrawn) {
+    EXPECT_THAT(steps("  - tetrahedralise:
+  - solid:
+  - draw:
+"), IsEmpty());
+    EXPECT_EQ(drawn(), "solid");
+    EXPECT_THAT(steps("  - thin:
+  - tetrahedralise:
+  - draw:
+"), IsEmpty()) << "tets are not drawn";
+    EXPECT_EQ(drawn(), "thin");
+    EXPECT_THAT(steps("  - pair:
+  - register:
+    in: {source: pair.left, target: pair.right}
+  - draw:
+"),
+                IsEmpty())
+        << "a transform is not geometric, and the first of two outputs is drawn";
+    EXPECT_EQ(drawn(), "pair");
+}
+
+TEST_F(DrawingWiring, WithoutAnEarlierValue_TheFirstInputThatFitsIsDrawn) {
+    EXPECT_THAT(steps("  - tetrahedralise:
+  - draw:
+"), IsEmpty());
+    EXPECT_EQ(drawn(), "scan");
+    EXPECT_THAT(findings("scanmill: 1
+inputs: {m: metrics, l: [points], a: points, b: mesh}
+steps:
+  - draw:
+"),
+                IsEmpty())
+        << "neither two inputs of different kinds nor lists are a question";
+    EXPECT_EQ(drawn(), "a");
+}
+
+TEST_F(DrawingWiring, OtherOutputsAndValuesByName_AreNotDrawn) {
+    EXPECT_THAT(steps("  - thin:
+  - named:
+    in: {scene: thin}
+  - draw:
+"), IsEmpty());
+    EXPECT_EQ(drawn(), "thin");
+}
+
+TEST_F(DrawingWiring, In_SelectsAnyValueThatFits) {
+    EXPECT_THAT(steps("  - pair:
+  - thin:
+    in: {points: scan}
+  - draw:
+    in: {
+    scene:
+        pair.right}
+"),
+                IsEmpty());
+    EXPECT_EQ(drawn(), "pair.right");
+    EXPECT_THAT(steps("  - tetrahedralise:
+  - draw:
+    in: {
+    scene:
+        tetrahedralise}
+"),
+                ElementsAre(HasSubstr("'tetrahedralise' is tets; the port 'scene' of draw takes mesh, points")));
+}
+
+TEST_F(DrawingWiring, NothingToDraw_IsAnErrorThatNamesTheKinds) {
+    EXPECT_THAT(findings("scanmill: 1
+inputs: {m: metrics}
+steps:
+  - draw:
+"),
+                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("draw draws mesh, points or features"),
+                                  HasSubstr("`in: {scene: …}`"))));
+    EXPECT_THAT(findings("scanmill: 1
+inputs: {m: metrics}
+steps:
+  - thim:
+  - draw:
+"),
+                ElementsAre(HasSubstr("no filter 'thim'")))
+        << "the unknown step may make the value";
+}
+
 }  // namespace
 }  // namespace scanmill

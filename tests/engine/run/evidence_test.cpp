@@ -151,6 +151,64 @@ TEST_F(Evidence, FailFast_StillWritesTheFailedCell) {
     EXPECT_FALSE(exists("t-a.ply"));
 }
 
+/// The width of a picture of test-draw is the number of points that it shows.
+u32 width_of(const fs::path& file) { return read_file(file).value.get<Picture>()->width; }
+
+TEST_F(Evidence, PictureOfTheUnmetValue_IsDrawnBelowFailed) {
+    const RunReport report =
+        run("  - id: a\n    test-step: {factor: 2}\n    expect: {points: '> 4'}\n  - id: seen\n    test-draw:\n"
+            "  - id: c\n    test-step: {log: " +
+                log() + "}\n  - id: late\n    test-draw:\n    in: {scene: c}\n",
+            {scan("s.xyz")},
+            "outputs: {'{scan}.ply': a, '{scan}.png': seen, '{scan}-c.ply': c, '{scan}-late.png': late}\n");
+    const CellReport& cell = report.cells[0];
+    EXPECT_EQ(cell.outcome, Outcome::failed);
+    EXPECT_EQ(cell.failure.cause, Cause::expectation);
+    EXPECT_EQ(runs_logged(), 0u) << "other steps do not take the value";
+    ASSERT_TRUE(exists("failed/s.png"));
+    EXPECT_EQ(width_of(folder_ / "out/failed/s.png"), 4u);
+    EXPECT_TRUE(exists("failed/s.ply"));
+    EXPECT_FALSE(exists("s.png"));
+    EXPECT_FALSE(exists("failed/s-late.png")) << "its input was not made";
+    EXPECT_EQ(description("failed/s.png")["unmet"].size(), 1u);
+    EXPECT_EQ(cell.outputs[1].evidence, graph_.output_folder / "failed/s.png");
+}
+
+TEST_F(Evidence, PictureThatCannotBeDrawn_LeavesTheExpectationAsTheCause) {
+    const RunReport report =
+        run("  - id: a\n    test-step:\n    expect: {points: '> 4'}\n  - id: seen\n    test-draw: {fails: true}\n",
+            {scan("s.xyz")}, "outputs: {'{scan}.ply': a, '{scan}.png': seen}\n");
+    EXPECT_EQ(report.cells[0].failure.cause, Cause::expectation);
+    EXPECT_TRUE(exists("failed/s.ply"));
+    EXPECT_FALSE(exists("failed/s.png"));
+}
+
+TEST_F(Evidence, FailFast_StillDrawsTheFailedCell) {
+    settings_.fail_fast = true;
+    const RunReport report =
+        run("  - id: a\n    test-step:\n    expect: {points: '> 4'}\n  - id: seen\n    test-draw:\n",
+            {scan("s.xyz"), scan("t.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 3\n")}, "outputs: {'{scan}.png': seen}\n");
+    EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
+    EXPECT_EQ(report.cells[1].outcome, Outcome::skipped);
+    EXPECT_TRUE(exists("failed/s.png"));
+    EXPECT_FALSE(exists("t.png"));
+    EXPECT_FALSE(exists("failed/t.png"));
+}
+
+TEST_F(CachedRun, PictureOfAnUnmetValue_IsTakenFromTheCache) {
+    const std::string steps =
+        "  - id: a\n    test-step: {log: " + log() + "}\n    expect: {points: '> 4'}\n  - test-draw:\n";
+    const std::string outputs = "outputs: {'{scan}.png': test-draw}\n";
+    run(steps, {scan("a.xyz")}, outputs);
+    const std::string before = content_of(folder_ / "out/failed/a.png");
+    EXPECT_NE(before, "");
+    fs::remove_all(folder_ / "out");
+    const RunReport again = run(steps, {scan("a.xyz")}, outputs);
+    EXPECT_EQ(again.nodes.back().origin, Origin::cached);
+    EXPECT_EQ(again.cells[0].failure.cause, Cause::expectation);
+    EXPECT_EQ(content_of(folder_ / "out/failed/a.png"), before);
+}
+
 TEST_F(Evidence, OtherFailures_WriteNothingToFailed) {
     const RunReport report = run("  - id: a\n    test-step:\n  - id: b\n    test-step: {mode: fail}\n", {scan("s.xyz")},
                                  "outputs: {'{scan}-a.ply': a, '{scan}-b.ply': b}\n");

@@ -53,6 +53,18 @@ TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
     EXPECT_EQ(there.cells[0].outputs[0].properties.values, here.cells[0].outputs[0].properties.values);
 }
 
+TEST_F(WorkerProcessesTest, Picture_IsTheSameFromAWorker) {
+    const std::string drawing = step + "  - test-draw: {caption: Four points}\n";
+    const std::string output = "outputs: {'{scan}.png': test-draw}\n";
+    ASSERT_TRUE(run(drawing, {scan("a.xyz")}, output).outcome() == Outcome::ok);
+    const std::string file = content_of(folder_ / "out/a.png");
+    std::filesystem::remove_all(folder_ / "out");
+    const RunReport there = run_with({test::program_file(), "worker"});
+    ASSERT_TRUE(there.outcome() == Outcome::ok) << there.cells[0].failure.whole().what();
+    EXPECT_EQ(content_of(folder_ / "out/a.png"), file);
+    EXPECT_NE(file, "");
+}
+
 TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {
     prepare(step, {scan("a.xyz"), scan("b.xyz", "1 2 3\n4 5 6\n7 8 9\n")}, step_output);
     struct Stranger {

@@ -18,7 +18,7 @@ SCANMILL_FILTER() {
         .draws("scene")
         .run([](const Inputs& inputs, const P& params, Context&) {
             const TriangleMesh* mesh = inputs.find<TriangleMesh>("scene");
-            return Outputs().set("picture", test_draw(mesh ? mesh->positions : inputs.get<PointCloud>("scene").positions,
-                                                      params));
+            return Outputs().set("picture",
+                                 test_draw(mesh ? mesh->positions : inputs.get<PointCloud>("scene").positions, params));
         });
 }
