@@ -24,7 +24,7 @@ constexpr Colour clay = {226, 219, 204}, clay_from_behind = {120, 144, 176}, cro
                  wire = {60, 60, 60}, dark_band = {40, 40, 44}, bright_band = {244, 244, 240};
 
 /// Lights of plain surfaces: from everywhere, from the upper left, and from the camera.
-constexpr double everywhere = 0.18, upper_left = 0.52, from_camera = 0.30;
+constexpr double everywhere = 0.20, upper_left = 0.62, from_camera = 0.32;
 /// Surfaces that show values have light from the camera only, so that a face towards the camera has the legend's
 /// colour.
 constexpr double least_light_of_values = 0.4;
@@ -208,11 +208,11 @@ private:
                (least + (1 - least) * std::max(0.0, -normal.dot(ray.direction)));
     }
 
-    /// Whether the hit is within half a pixel of an edge of its triangle, in the picture.
+    /// Whether the hit is within a third of a pixel of an edge of its triangle, in the picture.
     bool is_at_edge(const RayHit& hit, const Ray& ray, double depth) const {
         const Triangle& corners = scene_.mesh.triangles[hit.item];
         const Vec3 place = ray.origin + hit.distance * ray.direction;
-        const double width = 0.5 * view_.pixel(depth);
+        const double width = 0.35 * view_.pixel(depth);
         for (std::size_t i = 0; i < 3; ++i) {
             const auto seen = [&](const Vec3& position) {
                 const Vec3 offset = position - place;
