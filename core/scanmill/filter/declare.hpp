@@ -152,9 +152,10 @@ void assign(std::optional<T>& field, const ParameterValue& value) {
 
 }  // namespace detail
 
-/// Options of an input port, in any combination: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points",
-/// "…", list)`. A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`. With `by_name`,
-/// only `in` wires the port; of an output, only steps that name it in `in` take its value.
+/// Options of a port, in any combination: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…",
+/// list)`. A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`. Only `in` connects a
+/// port that is by_name: an input to an earlier value, or a later step to an output. Outputs are neither optional nor
+/// lists.
 enum class PortOption { optional, list, by_name };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
@@ -214,10 +215,12 @@ public:
         return *this;
     }
     /// Declares an output that has the kind of the value at the input `like`. Pre: this input is already declared.
-    Declare& out_like(std::string port, std::string like, std::string help) {
+    template <std::same_as<PortOption>... Options>
+    Declare& out_like(std::string port, std::string like, std::string help, Options... options) {
         PortSpec spec{std::move(port), {}, std::move(help)};
         if (const PortSpec* input = declaration_.spec.input(like)) spec.kind = input->kind;
         spec.like = std::move(like);
+        spec.by_name = ((options == PortOption::by_name) || ...);
         declaration_.spec.outputs.push_back(std::move(spec));
         return *this;
     }

@@ -24,23 +24,24 @@ struct PortSpec {
     /// The input that determines the value's kind; outputs only. `kind` is the first kind of this input.
     std::string like{};
     std::string maker{};  ///< the filter that usually produces the value; empty if no filter is typical
-    /// Only `in` wires the input; later steps take the output only if they name it.
-    bool by_name = false;
+    bool by_name = false;  ///< only `in` connects it: an input to a value, or a later step to an output
 
     bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;
 };
 constexpr auto fields(const PortSpec*) {
     using T = PortSpec;
-    return std::tuple{field("name", &T::name),
-                      field("kind", &T::kind),
-                      field("help", &T::help),
-                      field("list", &T::list, "The port takes any number of values.").optional(),
-                      field("optional", &T::optional).optional(),
-                      field("also", &T::also, "Other kinds that the port takes.").optional(),
-                      field("like", &T::like, "The input whose kind the output has.").optional(),
-                      field("maker", &T::maker, "The filter that usually makes the value.").optional(),
-                      field("by-name", &T::by_name, "Only `in` wires the input, or takes the output.").optional()};
+    return std::tuple{
+        field("name", &T::name),
+        field("kind", &T::kind),
+        field("help", &T::help),
+        field("list", &T::list, "The port takes any number of values.").optional(),
+        field("optional", &T::optional).optional(),
+        field("also", &T::also, "Other kinds that the port takes.").optional(),
+        field("like", &T::like, "The input whose kind the output has.").optional(),
+        field("maker", &T::maker, "The filter that usually makes the value.").optional(),
+        field("by-name", &T::by_name, "Only `in` connects the port: an input to a value, or a later step to an output.")
+            .optional()};
 }
 
 /// "mesh or points".
