@@ -40,6 +40,15 @@ TEST(ReproducingCommand, OfARun_KeepsWhatDecidesResults) {
         "scanmill run w.yaml a.ply b.ply --set 'x=1 mm' --unit mm --threads 2 --set=y=2 --only fine -o reproduced");
 }
 
+TEST(ReproducingCommand, OfARunWithAPicture_DrawsIt) {
+    RunDetails run = made_run(1);
+    run.start.file = "w.yaml";
+    run.start.arguments = {"scanmill", "run", "w.yaml", "--picture", "a.ply", "b.ply"};
+    const CellRecord& cell = add_cell(run, "b.ply", "fine");
+    run.cells.back().workflow = "w";
+    EXPECT_EQ(reproducing_command(run, cell, "b.ply"), "scanmill run w.yaml b.ply --picture --only fine -o reproduced");
+}
+
 TEST(QuotedWord, AnyName_IsOneWordOnOneLine) {
     EXPECT_EQ(quoted_word("a/b.ply"), "a/b.ply");
     EXPECT_EQ(quoted_word("a b"), "'a b'");

@@ -266,17 +266,17 @@ public:
         spec.type = ParameterType::choice;
         spec.list = true;
         std::vector<ParameterScalar> defaults;
-        const Params initial;
-        for (const Enum value : initial.*field)
+        const Params params{};  // named, because a temporary would end before the loop
+        for (const Enum value : params.*field)
             for (const auto& alternative : alternatives)
                 if (alternative.value == value) defaults.emplace_back(alternative.name);
         spec.default_value = std::move(defaults);
         for (const auto& alternative : alternatives) spec.choices.push_back({alternative.name, alternative.help});
-        setters_.emplace_back(spec.name, [field, alternatives](Params& params, const ParameterValue& value) {
-            (params.*field).clear();
+        setters_.emplace_back(spec.name, [field, alternatives](Params& target, const ParameterValue& value) {
+            (target.*field).clear();
             for (const ParameterScalar& item : std::get<std::vector<ParameterScalar>>(value))
                 for (const auto& alternative : alternatives)
-                    if (alternative.name == std::get<std::string>(item)) (params.*field).push_back(alternative.value);
+                    if (alternative.name == std::get<std::string>(item)) (target.*field).push_back(alternative.value);
         });
         return *this;
     }

@@ -95,84 +95,43 @@ protected:
 };
 
 TEST_F(DrawingWiring, WithoutIn_TheLastGeometricValueIsDrawn) {
-    EXPECT_THAT(steps("  - tetrahedralise:
-  - solid:
-  - draw:
-"), IsEmpty());
+    EXPECT_THAT(steps("  - tetrahedralise:\n  - solid:\n  - draw:\n"), IsEmpty());
     EXPECT_EQ(drawn(), "solid");
-    EXPECT_THAT(steps("  - thin:
-  - tetrahedralise:
-  - draw:
-"), IsEmpty()) << "tets are not drawn";
+    EXPECT_THAT(steps("  - thin:\n  - tetrahedralise:\n  - draw:\n"), IsEmpty()) << "tets are not drawn";
     EXPECT_EQ(drawn(), "thin");
-    EXPECT_THAT(steps("  - pair:
-  - register:
-    in: {source: pair.left, target: pair.right}
-  - draw:
-"),
+    EXPECT_THAT(steps("  - pair:\n  - register:\n    in: {source: pair.left, target: pair.right}\n  - draw:\n"),
                 IsEmpty())
         << "a transform is not geometric, and the first of two outputs is drawn";
     EXPECT_EQ(drawn(), "pair");
 }
 
 TEST_F(DrawingWiring, WithoutAnEarlierValue_TheFirstInputThatFitsIsDrawn) {
-    EXPECT_THAT(steps("  - tetrahedralise:
-  - draw:
-"), IsEmpty());
+    EXPECT_THAT(steps("  - tetrahedralise:\n  - draw:\n"), IsEmpty());
     EXPECT_EQ(drawn(), "scan");
-    EXPECT_THAT(findings("scanmill: 1
-inputs: {m: metrics, l: [points], a: points, b: mesh}
-steps:
-  - draw:
-"),
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {m: metrics, l: [points], a: points, b: mesh}\nsteps:\n  - draw:\n"),
                 IsEmpty())
         << "neither two inputs of different kinds nor lists are a question";
     EXPECT_EQ(drawn(), "a");
 }
 
 TEST_F(DrawingWiring, OtherOutputsAndValuesByName_AreNotDrawn) {
-    EXPECT_THAT(steps("  - thin:
-  - named:
-    in: {scene: thin}
-  - draw:
-"), IsEmpty());
+    EXPECT_THAT(steps("  - thin:\n  - named:\n    in: {scene: thin}\n  - draw:\n"), IsEmpty());
     EXPECT_EQ(drawn(), "thin");
 }
 
 TEST_F(DrawingWiring, In_SelectsAnyValueThatFits) {
-    EXPECT_THAT(steps("  - pair:
-  - thin:
-    in: {points: scan}
-  - draw:
-    in: {
-    scene:
-        pair.right}
-"),
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: scan}\n  - draw:\n    in: {scene: pair.right}\n"),
                 IsEmpty());
     EXPECT_EQ(drawn(), "pair.right");
-    EXPECT_THAT(steps("  - tetrahedralise:
-  - draw:
-    in: {
-    scene:
-        tetrahedralise}
-"),
+    EXPECT_THAT(steps("  - tetrahedralise:\n  - draw:\n    in: {scene: tetrahedralise}\n"),
                 ElementsAre(HasSubstr("'tetrahedralise' is tets; the port 'scene' of draw takes mesh, points")));
 }
 
 TEST_F(DrawingWiring, NothingToDraw_IsAnErrorThatNamesTheKinds) {
-    EXPECT_THAT(findings("scanmill: 1
-inputs: {m: metrics}
-steps:
-  - draw:
-"),
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {m: metrics}\nsteps:\n  - draw:\n"),
                 ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("draw draws mesh, points or features"),
                                   HasSubstr("`in: {scene: …}`"))));
-    EXPECT_THAT(findings("scanmill: 1
-inputs: {m: metrics}
-steps:
-  - thim:
-  - draw:
-"),
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {m: metrics}\nsteps:\n  - thim:\n  - draw:\n"),
                 ElementsAre(HasSubstr("no filter 'thim'")))
         << "the unknown step may make the value";
 }
