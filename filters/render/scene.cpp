@@ -10,6 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/point_tree.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
@@ -23,8 +24,10 @@ namespace {
 /// Colours that remain different for colour-blind people (Okabe and Ito 2008).
 constexpr Colour black = {30, 30, 30}, blue = {0, 114, 178}, vermillion = {213, 94, 0}, green = {0, 158, 115};
 
-/// Radius of a point's disc, in spacings. A regular grid of such discs has no gaps.
-constexpr double disc_radius = 0.75;
+/// The radius of a point's disc is the distance to this neighbour, within these limits in spacings. Discs on a grid, or
+/// on scan lines that are farther apart than the points on a line, have no gaps then.
+constexpr std::size_t disc_neighbour = 6;
+constexpr double least_disc = 0.75, largest_disc = 3;
 /// Limit between smooth and sharp edges without declared sharp edges, as in `features`.
 constexpr double crease_angle = 40 * std::numbers::pi / 180;
 constexpr double line_width = 1.6, dot_radius = 3.5;
@@ -102,24 +105,43 @@ private:
         const double spacing = point_spacing(cloud->positions.span());
         const double diagonal = bounding_box(cloud->positions.span()).diagonal();
         constexpr double of_diagonal = 0.005;  // for one point, and for points that coincide
-        const double radius = spacing > 0 ? disc_radius * spacing : diagonal > 0 ? of_diagonal * diagonal : 1;
+        Array<double> radii(cloud->size(), diagonal > 0 ? of_diagonal * diagonal : 1);
+        if (spacing > 0) radii = local_radii(cloud->positions.span(), spacing);
         const Column* normals = cloud->columns.find("normal");
-        scene_.discs_have_normals = normals && normals->components() == 3;
+        const bool has_normals = normals && normals->components() == 3;
         scene_.discs.resize(cloud->size());
         for (std::size_t row = 0; row < cloud->size(); ++row) {
             Vec3 normal = Vec3::Zero();
-            if (scene_.discs_have_normals) {
+            if (has_normals) {
                 normal = {normals->number(row, 0), normals->number(row, 1), normals->number(row, 2)};
                 normal = normal.allFinite() && normal.norm() > 0 ? normal.normalized().eval() : Vec3::Zero().eval();
             }
-            scene_.discs[row] = {cloud->positions[row], normal, radius};
+            scene_.discs[row] = {cloud->positions[row], normal, radii[row]};
         }
+        const auto median = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+        std::nth_element(radii.begin(), median, radii.end());
+        scene_.disc_radius = *median;
         if (params_.colour) {
             const Column* column = cloud->columns.find(*params_.colour);
             if (!column) no_such_column({&cloud->columns});
             colour_by(*column, false, cloud->frame);
         }
         label(cloud->positions.span(), cloud->columns);
+    }
+
+    /// By row, for points that do not all coincide.
+    Array<double> local_radii(std::span<const Vec3> positions, double spacing) const {
+        const PointTree tree(positions, context_.threads());
+        Array<double> by_position(tree.positions().size());
+        tree.for_each_nearest(disc_neighbour, context_.threads(), [&](const NeighbourBatch& batch) {
+            for (std::size_t i = 0; i < batch.indices.size(); ++i) {
+                const double reach = batch.each == 0 ? 0 : std::sqrt(batch.of(i).back().squared);
+                by_position[batch.indices[i]] = std::clamp(reach, least_disc * spacing, largest_disc * spacing);
+            }
+        });
+        Array<double> radii(positions.size());
+        for (std::size_t row = 0; row < radii.size(); ++row) radii[row] = by_position[tree.index_of_row()[row]];
+        return radii;
     }
 
     void show(const PatchComplex* patches) {

@@ -40,7 +40,7 @@ struct DrawnColumn {
 struct DrawnScene {
     TriangleMesh mesh;  ///< without triangles for scenes of points or lines
     Array<Disc> discs;
-    bool discs_have_normals = false;
+    double disc_radius = 0;  ///< the median of the discs' radii
     std::optional<DrawnColumn> column;
     /// One per triangle, nonzero if it intersects another; empty unless wanted.
     std::vector<u8> intersecting;

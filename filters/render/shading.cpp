@@ -234,7 +234,7 @@ private:
             Pixel& pixel = at(column, row);
             if (pixel.hits == 0 || pixel.normal != std::array<float, 3>{}) continue;
             const double width = view_.pixel(pixel.depth);
-            const double nearby = std::max(3 * width, scene_.discs.front().radius) * 2;
+            const double nearby = std::max(3 * width, scene_.disc_radius) * 2;
             Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
             Vec3 right_side = Vec3::Zero();
             for (std::int64_t dy = -reach; dy <= reach; ++dy)
@@ -270,7 +270,7 @@ private:
             const Vec3 any = std::abs(normal.x()) < 0.5 ? Vec3::UnitX() : Vec3::UnitY();
             const Vec3 one = any.cross(normal).normalized(), other = normal.cross(one);
             // A float's depth errs; a disc lies beside its neighbours, not on them.
-            const double disc = scene_.discs.empty() ? 0 : scene_.discs.front().radius;
+            const double disc = scene_.disc_radius;
             const double offset = surface_offset * caster_.radius() + 1e-6 * pixel.depth + 2 * disc;
             int open = 0;
             for (int i = 0; i < occlusion_rays; ++i) {
@@ -286,8 +286,7 @@ private:
     /// The mean of the open shares in a 4 x 4 block of pixels on the same surface.
     double smoothed_open(u32 column, u32 row) {
         const Pixel& pixel = at(column, row);
-        const double nearby = 6 * view_.pixel(pixel.depth) + 1e-6 * pixel.depth +
-                              (scene_.discs.empty() ? 0 : 2 * scene_.discs.front().radius);
+        const double nearby = 6 * view_.pixel(pixel.depth) + 1e-6 * pixel.depth + 2 * scene_.disc_radius;
         double sum = 0, weight = 0;
         for (int dy = -2; dy < 2; ++dy)
             for (int dx = -2; dx < 2; ++dx) {

@@ -127,13 +127,6 @@ private:
                                    port.name, spec_.name, kinds_text(port), port.name);
             return {};
         }
-        if (port.by_name) {
-            if (!port.optional)
-                diagnostics_.error(step_.position,
-                                   "the port '{}' of {} must be named in `in`; expected `in: {{{}: …}}`", port.name,
-                                   spec_.name, port.name);
-            return {};
-        }
         std::size_t rivals = 0;
         for (const PortSpec& other : spec_.inputs) {
             if (other.kind != port.kind || other.name == port.name || !other.also.empty() || other.by_name) continue;

@@ -65,10 +65,10 @@ TEST_F(ExpectedParameters, ValueOfTheWrongForm_IsReportedAtTheCondition) {
 }
 
 TEST_F(ExpectedParameters, UndeclaredName_ProposesTheClosest) {
-    EXPECT_THAT(kept("least: 5, n: 1", "[$n, $leest]"),
-                ElementsAre(HasSubstr("no step uses the parameter 'least'"),
-                            AllOf(StartsWith("w:6:"), HasSubstr("no parameter 'leest'"),
-                                  HasSubstr("did you mean 'least'?"))));
+    EXPECT_THAT(
+        kept("least: 5, n: 1", "[$n, $leest]"),
+        ElementsAre(HasSubstr("no step uses the parameter 'least'"),
+                    AllOf(StartsWith("w:6:"), HasSubstr("no parameter 'leest'"), HasSubstr("did you mean 'least'?"))));
 }
 
 TEST_F(ExpectedParameters, SweptParameter_IsAnError) {

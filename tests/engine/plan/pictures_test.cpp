@@ -71,11 +71,11 @@ TEST_F(Pictures, InputThatIsAnOutput_IsDrawn) {
 }
 
 TEST_F(Pictures, NamesThatAreTaken_GetOtherOnes) {
-    EXPECT_THAT(with_picture(solid + "  - id: picture-solid\n    draw:\n",
-                             "'{scan}.stl': solid, '{scan}.png': picture-solid"),
-                IsEmpty());
-    EXPECT_THAT(pictures(), ElementsAre("{scan}.png <- picture-solid <- solid",
-                                        "{scan}-picture.png <- picture-solid <- solid"))
+    EXPECT_THAT(
+        with_picture(solid + "  - id: picture-solid\n    draw:\n", "'{scan}.stl': solid, '{scan}.png': picture-solid"),
+        IsEmpty());
+    EXPECT_THAT(pictures(),
+                ElementsAre("{scan}.png <- picture-solid <- solid", "{scan}-picture.png <- picture-solid <- solid"))
         << "an equal step is not run twice";
     EXPECT_TRUE(plan_.variants[0].steps_by_name.contains("picture-solid-2"));
     EXPECT_EQ(plan_.steps.size(), 4u);
@@ -123,8 +123,8 @@ TEST(PicturesWithoutADrawingFilter, AreAnError) {
     const test::DeclaredFilters filters;
     const FilterLibrary library = filters.library();
     Diagnostics diagnostics("w");
-    Workflow workflow = parse_workflow("scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs: {'a.ply': thin}\n",
-                                       diagnostics);
+    Workflow workflow = parse_workflow(
+        "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs: {'a.ply': thin}\n", diagnostics);
     make_plan_with_picture(std::move(workflow), library, {}, diagnostics);
     ASSERT_EQ(diagnostics.errors(), 1u);
     EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("no installed filter draws pictures"));

@@ -41,8 +41,7 @@ inline PointCloud cloud(Array<Vec3> positions) {
 }
 
 /// The deviation of one point; NaN if it is not counted.
-inline double deviation_at(const Vec3& point, const TriangleMesh& nominal,
-                           InspectParams params = params_with()) {
+inline double deviation_at(const Vec3& point, const TriangleMesh& nominal, InspectParams params = params_with()) {
     // A second point, which is always counted, so that the first may be left out.
     const auto& [a, b, c] = nominal.triangles[0];
     const Vec3 inside = (nominal.positions[a] + nominal.positions[b] + nominal.positions[c]) / 3;

@@ -30,8 +30,7 @@ double distance_by_all(const Vec3& p, const TriangleMesh& mesh) {
     double least = infinity, angles = 0;
     for (const auto& [i, j, k] : mesh.triangles) {
         const Vec3 a = mesh.positions[i] - p, b = mesh.positions[j] - p, c = mesh.positions[k] - p;
-        least = std::min(
-            least, nearest_by_projection(Vec3(0, 0, 0), a, b, c).norm());
+        least = std::min(least, nearest_by_projection(Vec3(0, 0, 0), a, b, c).norm());
         const double na = a.norm(), nb = b.norm(), nc = c.norm();
         angles += 2 * std::atan2(a.dot(b.cross(c)), na * nb * nc + a.dot(b) * nc + b.dot(c) * na + c.dot(a) * nb);
     }
@@ -73,8 +72,9 @@ TEST(InspectSign, NearestFaceOfASharpEdge_DoesNotDecide) {
     // A wedge of 20 degrees along z, its edge at the origin, its body towards -x: beside the edge, a point in front is
     // behind the plane of one face.
     const double slope = std::tan(10 * degree);
-    const TriangleMesh wedge = soup({{0, 0, 0}, {0, 0, 1}, {-1, slope, 0}, {-1, slope, 1}, {-1, -slope, 0}, {-1, -slope, 1}},
-                                    {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}, {2, 4, 3}, {3, 4, 5}, {0, 4, 2}, {1, 3, 5}});
+    const TriangleMesh wedge =
+        soup({{0, 0, 0}, {0, 0, 1}, {-1, slope, 0}, {-1, slope, 1}, {-1, -slope, 0}, {-1, -slope, 1}},
+             {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}, {2, 4, 3}, {3, 4, 5}, {0, 4, 2}, {1, 3, 5}});
     ASSERT_GT(signed_volume(wedge), 0);
     for (const double y : {-0.3, -0.05, 0.0, 0.05, 0.3})
         EXPECT_NEAR(deviation_at({0.1, y, 0.5}, wedge), std::hypot(0.1, y), 1e-12) << y;
@@ -115,7 +115,8 @@ TEST(InspectSign, RandomPoints_AgreeWithAllTrianglesAndWindingNumbers) {
 
 TEST(InspectSign, RepeatedVertices_ChangeNothing) {
     const Array<Vec3> points = random_points(500, {0, 0, 0}, {2, 2, 1}, 0.5, 3);
-    const Inspection joined = inspected(cloud(points), l_block()), apart = inspected(cloud(points), separate(l_block()));
+    const Inspection joined = inspected(cloud(points), l_block()),
+                     apart = inspected(cloud(points), separate(l_block()));
     EXPECT_EQ(apart.beyond_border, 0u);
     EXPECT_EQ(joined.deviations, apart.deviations);
 }
@@ -142,8 +143,7 @@ TEST(InspectSign, FoldedSheet_IsUndecidedBesideTheFold) {
 TEST(InspectSign, MisorientedEdge_IsUndecidedUnlessAllAgree) {
     // The halves of a flat square face up and down.
     const TriangleMesh torn = soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 3, 2}});
-    const Inspection found =
-        inspected(cloud({{0.5, 0.5, 0.1}, {0.75, 0.25, 0.1}, {0.25, 0.75, 0.1}}), torn);
+    const Inspection found = inspected(cloud({{0.5, 0.5, 0.1}, {0.75, 0.25, 0.1}, {0.25, 0.75, 0.1}}), torn);
     EXPECT_TRUE(std::isnan(found.deviations[0])) << "above the diagonal";
     EXPECT_DOUBLE_EQ(found.deviations[1], 0.1);
     EXPECT_DOUBLE_EQ(found.deviations[2], -0.1);
@@ -159,8 +159,8 @@ TEST(InspectSign, EdgeOfThreeTriangles_IsDecidedWhereAllAgree) {
     EXPECT_DOUBLE_EQ(found.deviations[0], 0.5);
     EXPECT_DOUBLE_EQ(found.deviations[1], 0.5);
     // Three sheets at 120 degrees around the z axis: between two of them, they disagree.
-    const TriangleMesh star = soup({{0, 0, 0}, {0, 0, 2}, {1, 0, 1}, {-0.5, 0.8, 1}, {-0.5, -0.8, 1}},
-                                   {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
+    const TriangleMesh star =
+        soup({{0, 0, 0}, {0, 0, 2}, {1, 0, 1}, {-0.5, 0.8, 1}, {-0.5, -0.8, 1}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
     const Inspection at_star = inspected(cloud({{1e-3, 1e-3, 1}, {0.5, 0.01, 1}}), star);
     EXPECT_NE(at_star.deviations[1], 0);
     EXPECT_EQ(at_star.points, at_star.numbers.counted + at_star.undecided + at_star.beyond_border);
@@ -174,12 +174,12 @@ TEST(InspectSign, InsideOutNominal_ReversesTheSigns) {
 
 TEST(InspectBorder, PointsBesideAnOpenSheet_AreLeftOut) {
     const TriangleMesh nominal = rectangle(2, 1);
-    const Inspection found = inspected(cloud({{1, 0.5, 0.1},      // above
-                                              {0.5, 0, 0.1},      // above the border
-                                              {0, 0, -0.2},       // below a corner
-                                              {2.5, 0.5, 0.1},    // beyond an edge
+    const Inspection found = inspected(cloud({{1, 0.5, 0.1},  // above
+                                              {0.5, 0, 0.1},  // above the border
+                                              {0, 0, -0.2},  // below a corner
+                                              {2.5, 0.5, 0.1},  // beyond an edge
                                               {-0.1, -0.1, 0.1},  // beyond a corner
-                                              {2.1, 1, 0}}),      // beyond a corner, along one edge, in the plane
+                                              {2.1, 1, 0}}),  // beyond a corner, along one edge, in the plane
                                        nominal);
     EXPECT_EQ(found.beyond_border, 3u);
     EXPECT_EQ(found.undecided, 0u);
