@@ -203,6 +203,8 @@ std::vector<View> views_of(const DrawnScene& framed, const RayCaster* caster, co
                            const RenderParams& params, const Rectangle& part, Context& context) {
     if (params.look_at && !params.eye) throw Error("`look-at` needs an `eye`").hint("give both, or choose a `camera`");
     const UpAxis up = up_axis(framed, params.up);
+    if (params.eye && params.camera != RenderParams().camera)
+        throw Error("`eye` and `camera` are two ways to set the view").hint("leave one of them out");
     if (params.eye) return {from_eye(framed, origin, up, params, part)};
     if (params.camera.empty()) throw Error("`camera` is empty").hint("name at least one camera, as [auto]");
     const std::vector<Rectangle> parts = parts_of(part, params.camera.size());

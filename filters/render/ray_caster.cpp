@@ -137,9 +137,12 @@ RayCaster::RayCaster(std::span<const Vec3> positions, std::span<const Triangle> 
     scene.positions = positions;
     scene.triangles = triangles;
     scene.discs = discs;
-    if (scene.size() == 0) throw Error("there is nothing to draw: the scene has neither triangles nor points");
+    if (scene.size() == 0)
+        throw Error("there is nothing to draw: the scene has neither triangles nor points")
+            .hint("give a mesh or points");
     if (scene.size() >= RayHit::none)
-        throw Error("a scene has at most {} items; found {}", RayHit::none - 1, scene.size());
+        throw Error("a scene has at most {} triangles and points; found {}", RayHit::none - 1, scene.size())
+            .hint("decimate the mesh, or thin the points");
     BoundingBox box;
     for (const Triangle& corners : triangles)
         for (const u32 vertex : corners) box.add(positions[vertex]);

@@ -68,7 +68,7 @@ struct RenderInputs {
 ///
 /// Pre: all inputs have one origin. Throws Error for a scene without triangles, points or lines, coordinates that are
 /// not finite, a column that does not exist or has more than one number per row and is not a colour, a scale upside
-/// down, an eye at the point that it looks at, and `look_at` without `eye`.
+/// down, an eye at the point that it looks at, `look_at` without `eye`, and `eye` with a `camera`.
 /// Ties: of equally near triangles or discs, the lowest row is seen.
 /// Cost: O(n log n) for the scene, 4 rays (style lines: 9) and 8 short rays per pixel; about 150 bytes per triangle and
 /// 80 per pixel. The bytes do not depend on the number of threads or on the processor.

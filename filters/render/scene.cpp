@@ -72,12 +72,15 @@ public:
                 .hint("`colour` is for meshes and points; leave it out");
         std::visit([&](const auto& value) { draw_over(value); }, inputs.over);
         if (!scene_.has_surface() && scene_.lines.empty() && scene_.dots.empty())
-            throw Error("there is nothing to draw: the scene is empty");
+            throw Error("there is nothing to draw: the scene is empty")
+                .hint("the step that made it reports why it found nothing");
         return std::move(scene_);
     }
 
 private:
-    void show(std::monostate) { throw Error("there is nothing to draw: the scene is missing"); }
+    void show(std::monostate) {
+        throw Error("there is nothing to draw: the scene is missing").hint("name it in `in`, as `in: {scene: STEP}`");
+    }
 
     void show(const TriangleMesh* mesh) {
         require_triangles(*mesh, "a picture needs at least one");
@@ -145,7 +148,8 @@ private:
     }
 
     void show(const PatchComplex* patches) {
-        if (patches->tets.empty()) throw Error("the complex has no patches; a picture needs at least one");
+        if (patches->tets.empty())
+            throw Error("the complex has no patches; a picture needs at least one").hint("`a-patch` makes patches");
         show(tessellate(*patches, {}, context_));
         scene_.summary = counted(patches->tets.size(), "patch", "patches");
     }
@@ -188,7 +192,9 @@ private:
 
     void draw_over(const ProbePlan* plan) {
         for (const ProbeTouch& touch : plan->touches) {
-            if (!touch.position.allFinite()) throw Error("touch {} has a coordinate that is not finite", touch.touch);
+            if (!touch.position.allFinite())
+                throw Error("touch {} has a coordinate that is not finite", touch.touch)
+                    .hint("correct the plan's file, or plan the probes again");
             scene_.dots.push_back({touch.position, touch.is_made() ? green : vermillion, dot_radius, ""});
             if (touch.is_made()) scene_.lines.push_back({touch.start, touch.position, blue, line_width});
         }
