@@ -3,18 +3,23 @@
 """bernardini_page.py PROGRAM SCAN FOLDER: writes docs/bernardini-1997.md and its pictures: the stages of
 workflows/bernardini-1997.yaml on one scan, as in Figure 1 of Bernardini et al. 1997, with the numbers of the run.
 Values of the workflow are written into FOLDER."""
-import colorsys
 import json
 import pathlib
 import subprocess
 import sys
 
-from shaded import View, corners, cross, minus, position, read_ply, unit
-
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGES = ROOT / "docs" / "bernardini-1997"
-STONE, INK = (214, 208, 196), (60, 60, 70)
-TOWARDS, UP = (0.45, 0.25, 0.85), (0, 1, 0)
+SIZE = "[640, 560]"
+#: The pictures by name: the file that is drawn, its kind, and the parameters of `render`.
+PICTURES = {
+    "points": ("{scan}", "points", ""),
+    "surface": ("{stem}.ply", "mesh", ""),
+    "light": ("{stem}-light.ply", "mesh", ", edges: true"),
+    "hull": ("{stem}-hull.off", "mesh", ", edges: true"),
+    "patches": ("{stem}-smooth.ply", "mesh", ", colour: patch, legend: false"),
+    "smooth": ("{stem}-smooth.ply", "mesh", ", style: lines"),
+}
 
 TEXTS = {
     "points": ("The scan", "{points:,} points, without normals and without order."),
@@ -28,7 +33,7 @@ TEXTS = {
     "patches": ("The patches", "Where the polynomials are 0 is the surface: a patch over every triangle, and strips between "
                 "them. Their gradients differ by at most {jump:.0e} of their length where two tetrahedra meet."),
     "smooth": ("The surface", "`tessellate` makes {smooth:,} triangles of it for other programs, with exact normals. The "
-               "scan's points have the distance {rms:.3g} from it on average (root mean square, {rms_share:.2g} % of the "
+               "picture shows the bands that it would reflect. The scan's points have the distance {rms:.3g} from it on average (root mean square, {rms_share:.2g} % of the "
                "diagonal); from the light mesh it is {light_rms:.3g}."),
 }
 
@@ -45,53 +50,36 @@ def measured(program, mesh, scan):
     return json.loads(printed.stdout)["metrics"]
 
 
-def view_of(points):
-    return View(points, TOWARDS, UP)
+def count(step):
+    return int(step["properties"]["triangles"])
 
 
-def mesh_picture(ply, points, name, edges=False):
-    vertices = [position(row) for row in ply["vertex"]]
-    view = view_of(points)
-    for row in ply["face"]:
-        a, b, c = (vertices[i] for i in corners(row))
-        normal = unit(cross(minus(b, a), minus(c, a)))
-        view.triangle(a, b, c, STONE, [normal] * 3)
-        if edges:
-            for p, q in ((a, b), (b, c), (c, a)):
-                view.line(p, q, INK)
-    view.write(PAGES / f"{name}.png")
+def write_hull(patches, file):
+    """Every second tetrahedron over a triangle of the light mesh, and the triangles, as an OFF file."""
+    places, triangles = patches["points"], []
+    for tet in patches["tets"]:
+        if tet["side"] == 1 and tet["kind"] == "face":
+            base, i, j, apex = tet["vertices"]
+            triangles.append((base, i, j))
+            if tet["patch"] % 2 == 0:
+                triangles += [(i, apex, base), (base, apex, j), (j, apex, i)]
+    lines = ["OFF", f"{len(places)} {len(triangles)} 0"]
+    lines += [f"{x} {y} {z}" for x, y, z in places]
+    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
+    file.write_text("\n".join(lines) + "\n")
 
 
-def smooth_picture(ply, points, name, coloured):
-    vertices = [position(row) for row in ply["vertex"]]
-    normals = [(row["nx"], row["ny"], row["nz"]) for row in ply["vertex"]]
-    view = view_of(points)
-    for row in ply["face"]:
-        colour = STONE
-        if coloured:
-            hue = row["patch"] * 0.618 % 1
-            colour = tuple(int(255 * part) for part in colorsys.hls_to_rgb(hue, 0.65, 0.55))
-        a, b, c = corners(row)
-        view.triangle(vertices[a], vertices[b], vertices[c], colour, [normals[a], normals[b], normals[c]])
-    view.write(PAGES / f"{name}.png")
-
-
-def hull_picture(document, points, name):
-    """Every second tetrahedron over a triangle, and the light mesh's triangles below."""
-    view = view_of(points)
-    places = document["points"]
-    for tet in document["tets"]:
-        if tet["side"] != 1 or tet["kind"] != "face":
-            continue
-        base, i, j, apex = (places[vertex] for vertex in tet["vertices"])
-        view.triangle(base, i, j, STONE, [unit(cross(minus(i, base), minus(j, base)))] * 3)
-        if tet["patch"] % 2:
-            continue
-        for p, q in ((i, j), (i, apex), (j, apex)):
-            view.line(p, q, INK, 0.1)
-        for a, b, c in ((base, i, apex), (base, j, apex), (i, j, apex)):
-            view.triangle(a, b, c, (160, 196, 214), [unit(cross(minus(b, a), minus(c, a)))] * 3)
-    view.write(PAGES / f"{name}.png")
+def draw(program, scan, folder):
+    """Draws all pictures with the camera of the solid."""
+    for name, (pattern, kind, parameters) in PICTURES.items():
+        file = pattern.format(scan=scan, stem=folder / scan.stem)
+        workflow = folder / f"draw-{name}.yaml"
+        workflow.write_text(f"scanmill: 1\nname: {name}\ninputs: {{scene: {kind}, solid: mesh}}\nsteps:\n"
+                            f"  - render: {{up: y, size: {SIZE}{parameters}}}\n"
+                            f"    in: {{scene: scene, truth: solid}}\noutputs: {{{name}.png: render}}\n")
+        subprocess.run([program, "run", workflow, file, "--in", f"solid={folder / scan.stem}.ply", "-o", folder, "--quiet",
+                        "--no-cache"], stdout=subprocess.DEVNULL, check=True)
+        (PAGES / f"{name}.png").write_bytes((folder / f"{name}.png").read_bytes())
 
 
 def main():
@@ -100,21 +88,11 @@ def main():
     cell = report["cells"][0]
     steps = {report["steps"][number]["step"]: report["steps"][number] for number in cell["steps"]}
     files = {pathlib.Path(one["file"]).name: one["file"] for one in cell["outputs"]}
-    surface, light, smooth = (read_ply(files[f"{scan.stem}{part}.ply"]) for part in ("", "-light", "-smooth"))
     with open(files[f"{scan.stem}-patches.json"]) as file:
         patches = json.load(file)
-    points = [position(row) for row in surface["vertex"]]
-
+    write_hull(patches, folder / f"{scan.stem}-hull.off")
     PAGES.mkdir(exist_ok=True)
-    view = view_of(points)
-    for p in points:
-        view.point(p, INK)
-    view.write(PAGES / "points.png")
-    mesh_picture(surface, points, "surface")
-    mesh_picture(light, points, "light", edges=True)
-    hull_picture(patches, points, "hull")
-    smooth_picture(smooth, points, "patches", coloured=True)
-    smooth_picture(smooth, points, "smooth", coloured=False)
+    draw(program, scan, folder)
 
     metrics = {name: step.get("metrics", {}) for name, step in steps.items()}
     near = measured(program, files[f"{scan.stem}-smooth.ply"], scan)
@@ -125,9 +103,9 @@ def main():
         "points": int(steps["read"]["properties"]["points"]), "cells": int(metrics["delaunay"]["cells"]),
         "kept": int(metrics["alpha-solid"]["cells"]), "alpha": metrics["alpha-solid"]["alpha"],
         "alpha_share": 100 * metrics["alpha-solid"]["alpha"] / diagonal, "carved": int(metrics["surface"]["removed"]),
-        "triangles": len(surface["face"]), "light": len(light["face"]), "error": error,
+        "triangles": count(steps["surface"]), "light": count(steps["light"]), "error": error,
         "error_share": 100 * error / diagonal, "tets": int(metrics["a-patch"]["tetrahedra"]),
-        "jump": metrics["a-patch"]["c1-jump"], "smooth": len(smooth["face"]), "rms": near["rms-from-truth"],
+        "jump": metrics["a-patch"]["c1-jump"], "smooth": count(steps["smooth"]), "rms": near["rms-from-truth"],
         "rms_share": 100 * near["rms-from-truth"] / diagonal, "light_rms": before["rms-from-truth"],
     }
     lines = ["<!-- Generated by `make paper`. Do not edit. -->", "# Bernardini, Bajaj, Chen and Schikore 1997 on one scan", "",
