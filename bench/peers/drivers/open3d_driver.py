@@ -98,8 +98,30 @@ def decimate(request):
     return of_decimation(request, seconds, mesh.vertices, mesh.triangles)
 
 
+def render(request):
+    """A parallel view from above: one ray per pixel, and the facets' normals. The margins are Scanmill's."""
+    width, height = request["width"], request["height"]
+    low, high = held["mesh"].get_min_bound(), held["mesh"].get_max_bound()
+    size = high - low
+
+    def work():
+        scene = open3d.t.geometry.RaycastingScene(nthreads=request["threads"])
+        scene.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(held["mesh"]))
+        pixel = max(size[0] / width, size[1] / height) / 0.9
+        columns = (low[0] + high[0]) / 2 + (numpy.arange(width) + 0.5 - width / 2) * pixel
+        lines = (low[1] + high[1]) / 2 - (numpy.arange(height) + 0.5 - height / 2) * pixel
+        rays = numpy.zeros((height, width, 6), dtype="float32")
+        rays[..., 0], rays[..., 1], rays[..., 2], rays[..., 5] = columns, lines[:, None], high[2] + size[2], -1
+        hits = scene.cast_rays(open3d.core.Tensor(rays), nthreads=request["threads"])
+        return hits["primitive_normals"].numpy(), hits["t_hit"].numpy()
+
+    seconds, (_, distances) = timed(work)
+    return {"seconds": seconds, "covered": float(numpy.isfinite(distances).mean())}
+
+
 answer(
     {"load": load, "voxel-thin": voxel_thin, "normals": normals, "alpha-shape": alpha_shape, "poisson": poisson,
-     "measure": measure, "distances": distances, "decimate": decimate},
+     "measure": measure, "distances": distances, "decimate": decimate,
+     "render": render},
     {"Open3D": open3d.__version__},
 )

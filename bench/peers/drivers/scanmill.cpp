@@ -18,6 +18,7 @@
 #include "outlier_removal/outlier_removal.hpp"
 #include "poisson/poisson.hpp"
 #include "region_grow/region_grow.hpp"
+#include "render/render.hpp"
 #include "repair/repair.hpp"
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/formats/files.hpp"
@@ -372,6 +373,21 @@ Json decimated(Held& held, const Json& request) {
             {"triangles", result.mesh.triangles.size()}};
 }
 
+/// A picture from above, z towards the camera.
+Json drawn(Held& held, const Json& request) {
+    const TriangleMesh mesh = held.mesh();
+    RenderParams params;
+    params.size = {request.at("width").get<u32>(), request.at("height").get<u32>()};
+    params.camera = {CameraView::top};
+    params.up = UpAxis::z;
+    Context context = context_for(request);
+    Picture picture;
+    const double seconds = peers::seconds_of([&] { picture = render({&mesh, {}, {}}, params, context); });
+    const auto is_covered = [](const Colour& colour) { return colour != Colour{255, 255, 255}; };
+    const auto covered = static_cast<double>(std::ranges::count_if(picture.pixels, is_covered));
+    return {{"seconds", seconds}, {"covered", covered / static_cast<double>(picture.pixels.size())}};
+}
+
 }  // namespace
 
 int main() {
@@ -391,6 +407,7 @@ int main() {
                           {"fill-holes", with_held(filled)},
                           {"repair", with_held(repaired)},
                           {"measure", with_held(measured)},
+                          {"render", with_held(drawn)},
                           {"a-patch", with_held(patched)},
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},

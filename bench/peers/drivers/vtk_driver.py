@@ -97,8 +97,46 @@ def subdivide(request):
     return {"seconds": seconds, "triangles": filter.GetOutput().GetNumberOfPolys()}
 
 
+def render(request):
+    """A parallel view from above, with the margins of Scanmill's: 5 % beside the box of the points."""
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, chooses the classes that draw
+
+    width, height = request["width"], request["height"]
+
+    def work():
+        smooth = vtkPolyDataNormals()
+        smooth.SetInputData(held["mesh"])
+        smooth.SplittingOff()
+        mapper, actor, renderer, window = vtkPolyDataMapper(), vtkActor(), vtkRenderer(), vtkRenderWindow()
+        mapper.SetInputConnection(smooth.GetOutputPort())
+        actor.SetMapper(mapper)
+        renderer.AddActor(actor)
+        renderer.SetBackground(1, 1, 1)
+        window.SetOffScreenRendering(True)
+        window.SetMultiSamples(0)
+        window.SetSize(width, height)
+        window.AddRenderer(renderer)
+        x0, x1, y0, y1, z0, z1 = held["mesh"].GetBounds()
+        camera = renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint((x0 + x1) / 2, (y0 + y1) / 2, z0)
+        camera.SetPosition((x0 + x1) / 2, (y0 + y1) / 2, z1 + (z1 - z0))
+        camera.SetViewUp(0, 1, 0)
+        camera.SetParallelScale(max((x1 - x0) * height / width, y1 - y0) / 0.9 / 2)
+        renderer.ResetCameraClippingRange()
+        window.Render()
+        image = vtkWindowToImageFilter()
+        image.SetInput(window)
+        image.Update()
+        return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).copy()
+
+    seconds, pixels = timed(work)
+    return {"seconds": seconds, "covered": float((pixels != 255).any(axis=1).mean())}
+
+
 answer(
     {"load": load, "read": read, "write": write, "fill-holes": fill_holes, "repair": repair, "subdivide": subdivide,
-     "decimate": decimate},
+     "decimate": decimate, "render": render},
     {"VTK": vtkVersion.GetVTKVersion()},
 )
