@@ -146,15 +146,9 @@ double default_distance(const Distances& distances, const Scan& scan, std::span<
 
 /// The ends of colours and histogram.
 ColourScale scale_of(const Tolerance& tolerance, const DeviationNumbers& numbers) {
-    double widest = std::max(std::abs(tolerance.low), std::abs(tolerance.high));
-    if (widest == 0) widest = std::max(std::abs(numbers.min), std::abs(numbers.max)) / 2;
-    if (widest == 0) widest = 0.5;
-    ColourScale scale;
-    scale.low = tolerance.low < 0 ? 2 * tolerance.low : -2 * widest;
-    scale.high = tolerance.high > 0 ? 2 * tolerance.high : 2 * widest;
-    scale.tolerance_low = tolerance.low;
-    scale.tolerance_high = tolerance.high;
-    return scale;
+    if (tolerance.low != 0 || tolerance.high != 0) return scale_of_tolerance(tolerance.low, tolerance.high);
+    const double widest = std::max(std::abs(numbers.min), std::abs(numbers.max));
+    return widest > 0 ? ColourScale{-widest, widest} : ColourScale{-1, 1};
 }
 
 /// The counted rows, ascending.

@@ -43,6 +43,13 @@ Legend legend_of(const DrawnColumn& column) {
     const bool has_both_signs = low < 0 && high > 0;
     std::vector<double> values{low, (low + high) / 2, high};
     if (has_both_signs) values = {low, low / 2, 0, high / 2, high};
+    const double tolerance_low = column.scale.tolerance_low, tolerance_high = column.scale.tolerance_high;
+    if (tolerance_low != tolerance_high) {
+        values = {low};
+        for (const double value : {tolerance_low, 0.0, tolerance_high})
+            if (value > values.back() && value < high) values.push_back(value);
+        values.push_back(high);
+    }
     for (const double value : values)
         legend.ticks.push_back({(value - low) / (high - low), scale_text(value, high - low, has_both_signs)});
     if (has_both_signs && !column.unit.empty()) {

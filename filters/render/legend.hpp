@@ -27,8 +27,8 @@ struct Legend {
     bool shows_no_data = false;
 };
 
-/// Ticks are at the ends, at 0 if it is inside, and halfway. Lengths with both signs have the words *outside* and
-/// *inside*.
+/// Ticks are at the ends, at 0 if it is inside, and at the limits of a tolerance, or halfway without one. Lengths with
+/// both signs have the words *outside* and *inside*.
 Legend legend_of(const DrawnColumn& column);
 
 /// "-0.05": the value with as many decimals as a scale of this width needs, and with its sign if `is_signed`.

@@ -66,6 +66,10 @@ SCANMILL_FILTER() {
                "The values at the lower and upper end of the colours, written as lengths for every column. `auto` "
                "covers 98 % of the values, symmetrically if they have both signs.",
                word("auto"), size(2))
+        .param("tolerance", &P::tolerance,
+               "Lower and upper limit of the values: marked in the legend; values within have the lightest colours. "
+               "Without `scale`, the colours end at twice the limits.",
+               word("none"), size(2))
         .param("legend", &P::legend, "Whether the colours of numbers are explained beside the scene.")
         .choice("style", &P::style,
                 {{"shaded", P::Style::shaded, "Matt surfaces in light from the upper left, with ambient occlusion."},

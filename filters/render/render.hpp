@@ -33,6 +33,9 @@ struct RenderParams {
     std::optional<std::string> colour;
     /// The values at the ends of the colour scale. Without them, see render().
     std::optional<std::vector<Length>> scale;
+    /// The limits of the values. They are marked in the legend, and values within have the lightest colours. Without
+    /// `scale`, the colours end at twice the limits.
+    std::optional<std::vector<Length>> tolerance;
     bool legend = true;
     /// lines: reflections of parallel dark and bright bands, which show waves and kinks of a surface.
     enum class Style { shaded, lines } style = Style::shaded;

@@ -233,15 +233,27 @@ private:
         if (gaps == rows)
             context_.warn(fmt::format("the column '{}' has no value: the whole scene is grey", column.name()));
         if (column.length_exponent() == 1) drawn.unit = symbol(frame.unit);
-        if (!params_.scale) {
-            drawn.scale = automatic_scale(drawn.values);
-            return;
+        const auto tolerance = limits_of(params_.tolerance, "tolerance"), ends = limits_of(params_.scale, "scale");
+        const bool has_tolerance = tolerance && (tolerance->low != 0 || tolerance->high != 0);
+        drawn.scale =
+            has_tolerance ? scale_of_tolerance(tolerance->low, tolerance->high) : automatic_scale(drawn.values);
+        if (ends) {
+            drawn.scale.low = ends->low;
+            drawn.scale.high = ends->high;
         }
-        drawn.scale = {params_.scale->front().value(), params_.scale->back().value()};
-        if (!(drawn.scale.low <= drawn.scale.high) || !std::isfinite(drawn.scale.high - drawn.scale.low))
-            throw Error("the scale is upside down: it goes from {} to {}", number_text(drawn.scale.low),
-                        number_text(drawn.scale.high))
+    }
+
+    struct Limits {
+        double low, high;
+    };
+    static std::optional<Limits> limits_of(const std::optional<std::vector<Length>>& lengths, std::string_view name) {
+        if (!lengths) return std::nullopt;
+        const Limits limits{lengths->front().value(), lengths->back().value()};
+        if (!(limits.low <= limits.high) || !std::isfinite(limits.high - limits.low))
+            throw Error("the {} is upside down: it goes from {} to {}", name, number_text(limits.low),
+                        number_text(limits.high))
                 .hint("write the lower end first");
+        return limits;
     }
 
     /// Writes the coloured column's value, or the label's number, at every row with a label.
@@ -297,8 +309,11 @@ private:
 
 Array<Vec3> DrawnScene::extent() const {
     Array<Vec3> positions;
+    std::vector<bool> is_used(mesh.positions.size(), false);
     for (const Triangle& triangle : mesh.triangles)
-        for (const u32 vertex : triangle) positions.push_back(mesh.positions[vertex]);
+        for (const u32 vertex : triangle) is_used[vertex] = true;
+    for (std::size_t vertex = 0; vertex < is_used.size(); ++vertex)
+        if (is_used[vertex]) positions.push_back(mesh.positions[vertex]);
     for (const Disc& disc : discs) positions.push_back(disc.centre);
     for (const DrawnLine& line : lines) {
         positions.push_back(line.from);

@@ -43,6 +43,10 @@ double share_of(double distance, double band, double length) {
 
 }  // namespace
 
+ColourScale scale_of_tolerance(double low, double high) {
+    return {low < 0 ? 2 * low : -2 * high, high > 0 ? 2 * high : -2 * low, low, high};
+}
+
 Colour colour_of(const ColourScale& scale, double value) {
     assert(scale.low <= scale.high);
     if (std::isnan(value)) return no_data;

@@ -18,6 +18,11 @@ struct ColourScale {
     double tolerance_low = 0, tolerance_high = 0;
 };
 
+/// The scale for deviations with this tolerance: [2 low, 2 high]. A tolerance without a negative end begins at -2 high,
+/// one without a positive end ends at -2 low, so that deviations to the other side have colours, too.
+/// Pre: low ≤ high, not both 0.
+ColourScale scale_of_tolerance(double low, double high);
+
 /// The colour of values without data, such as NaN.
 inline constexpr Colour no_data = {160, 160, 160};
 
