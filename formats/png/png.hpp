@@ -8,8 +8,9 @@
 ///
 /// Reading: 8-bit grey and RGB, with or without alpha, interlaced or not. Grey becomes RGB. Alpha is left out, with a
 /// warning that counts the pixels that are not opaque. Colours are kept as they are stored; profiles and gamma are not
-/// applied. The caption is the text `Description`. Other texts are left out. Palettes and other bit depths are refused.
-/// A file whose header declares more pixels than its size can hold is refused before memory is allocated.
+/// applied. The caption, also the file's comment, is the text `Description`. Other texts are left out. Palettes and
+/// other bit depths are refused. A file whose header declares more pixels than its size can hold is refused before
+/// memory is allocated.
 ///
 /// Source: Portable Network Graphics specification, second edition, ISO/IEC 15948:2004.
 

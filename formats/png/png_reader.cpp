@@ -54,7 +54,9 @@ public:
         picture.caption = caption();
         const std::string encoding =
             fmt::format("8-bit {}{}", channels >= 3 ? "RGB" : "grey", channels % 2 == 0 ? " with alpha" : "");
-        return {std::make_shared<const Picture>(std::move(picture)), "PNG", encoding, {}};
+        std::vector<std::string> comments;
+        if (!picture.caption.empty()) comments.push_back(picture.caption);
+        return {std::make_shared<const Picture>(std::move(picture)), "PNG", encoding, std::move(comments)};
     }
 
 private:

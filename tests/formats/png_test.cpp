@@ -150,6 +150,7 @@ TEST(Png, WrittenPicture_ReadsBackEqual) {
     EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_EQ(loaded.format, "PNG");
     EXPECT_EQ(loaded.encoding, "8-bit RGB");
+    EXPECT_THAT(loaded.comments, ElementsAre(picture.caption));
     const auto back = loaded.value.get<Picture>();
     EXPECT_EQ(back->width, 31u);
     EXPECT_EQ(back->height, 9u);
@@ -243,7 +244,8 @@ TEST(PngCommand, Info_ShowsTheSizeAndConvertNamesTheFormat) {
     write_file(folder / "a.png", std::make_shared<const Picture>(made_picture(31, 9)));
     const ProgramResult info = scanmill_program({"info", "a.png"}, {.folder = folder.path()});
     EXPECT_EQ(info.exit_code, 0) << info.err;
-    EXPECT_THAT(info.out, AllOf(HasSubstr("picture"), HasSubstr("31"), HasSubstr("9"), HasSubstr("8-bit RGB")));
+    EXPECT_THAT(info.out, AllOf(HasSubstr("picture"), HasSubstr("31"), HasSubstr("9"), HasSubstr("8-bit RGB"),
+                                HasSubstr("A cube, seen from +z")));
     const ProgramResult convert = scanmill_program({"convert", "a.png", "a.ply"}, {.folder = folder.path()});
     EXPECT_EQ(convert.exit_code, 1);
     EXPECT_THAT(convert.err, HasSubstr("picture cannot be written with the extension '.ply'"));

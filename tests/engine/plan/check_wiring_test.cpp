@@ -85,7 +85,7 @@ protected:
         filters_.add(test::drawing_filter("draw"));
         FilterSpec list = test::drawing_filter("named");
         list.draws.reset();
-        list.outputs.front() = {"mesh", kind_of<TriangleMesh>(), "All.", false, false};
+        list.outputs.front() = {"mesh", kind_of<TriangleMesh>(), "All triangles.", false, false};
         list.outputs.front().by_name = true;
         filters_.add(list);
         library_ = filters_.library();
@@ -123,13 +123,14 @@ TEST_F(DrawingWiring, In_SelectsAnyValueThatFits) {
     EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: scan}\n  - draw:\n    in: {scene: pair.right}\n"),
                 IsEmpty());
     EXPECT_EQ(drawn(), "pair.right");
-    EXPECT_THAT(steps("  - tetrahedralise:\n  - draw:\n    in: {scene: tetrahedralise}\n"),
-                ElementsAre(HasSubstr("'tetrahedralise' is tets; the port 'scene' of draw takes mesh, points")));
+    EXPECT_THAT(
+        steps("  - tetrahedralise:\n  - draw:\n    in: {scene: tetrahedralise}\n"),
+        ElementsAre(HasSubstr("'tetrahedralise' is tets; the port 'scene' of draw takes mesh or points or features")));
 }
 
 TEST_F(DrawingWiring, NothingToDraw_IsAnErrorThatNamesTheKinds) {
     EXPECT_THAT(findings("scanmill: 1\ninputs: {m: metrics}\nsteps:\n  - draw:\n"),
-                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("draw draws mesh, points or features"),
+                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("draw draws mesh or points or features"),
                                   HasSubstr("`in: {scene: …}`"))));
     EXPECT_THAT(findings("scanmill: 1\ninputs: {m: metrics}\nsteps:\n  - thim:\n  - draw:\n"),
                 ElementsAre(HasSubstr("no filter 'thim'")))

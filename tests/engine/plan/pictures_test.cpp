@@ -84,7 +84,7 @@ TEST_F(Pictures, NamesThatAreTaken_GetOtherOnes) {
 TEST_F(Pictures, VariantWithoutADrawableValue_HasNone) {
     FilterSpec edges = test::drawing_filter("edges");
     edges.draws.reset();
-    edges.outputs.front() = {"features", kind_of<FeatureGraph>(), "All.", false, false};
+    edges.outputs.front() = {"features", kind_of<FeatureGraph>(), "All edges.", false, false};
     filters_.add(edges);
     EXPECT_THAT(with_picture("  - id: last\n    one-of:\n      - edges:\n        in: {scene: scan}\n      - register:\n"
                              "        in: {source: scan, target: scan}\n",
@@ -98,7 +98,7 @@ TEST_F(Pictures, VariantWithoutADrawableValue_HasNone) {
 TEST_F(Pictures, WorkflowWithoutADrawableOutput_IsAnError) {
     const std::string steps = "  - register:\n    in: {source: scan, target: scan}\n";
     EXPECT_THAT(with_picture(steps, "'{scan}.json': register"),
-                ElementsAre(AllOf(HasSubstr("has no output for a picture"), HasSubstr("mesh, points or features"))));
+                ElementsAre(AllOf(HasSubstr("has no output for a picture"), HasSubstr("mesh or points or features"))));
     EXPECT_THAT(with_picture(solid, ""), ElementsAre(HasSubstr("has no output for a picture")));
 }
 
