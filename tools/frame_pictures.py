@@ -66,6 +66,58 @@ def apply_transform():
     return picture
 
 
+def icp():
+    """A scan with a dent beside its nominal contour, and on it after point-to-line iterations with Tukey's weights."""
+    picture = Picture(9, 3.6)
+    source = random.Random(7)
+    contour = [(-1.5, -0.9), (1.5, -0.9), (1.5, 0.1), (0.3, 0.1), (0.3, 0.9), (-1.5, 0.9)]
+    sides = list(zip(contour, contour[1:] + contour[:1]))
+    scan = []
+    for (ax, ay), (bx, by) in sides:
+        length = math.hypot(bx - ax, by - ay)
+        outward = ((by - ay) / length, (ax - bx) / length)
+        for k in range(1, round(length / 0.12)):
+            s = k * 0.12 / length
+            x, y = ax + s * (bx - ax), ay + s * (by - ay)
+            offset = source.gauss(0, 0.02) - (0.22 if by == -0.9 and ay == -0.9 and abs(x) < 0.35 else 0)
+            scan.append((x + offset * outward[0], y + offset * outward[1]))
+    start = turned(scan, 0.09, (0.12, 0.14))
+    moved, cut = start, 0.6
+    for _ in range(30):
+        rows = []
+        for x, y in moved:
+            feet = []
+            for (ax, ay), (bx, by) in sides:
+                ux, uy = bx - ax, by - ay
+                s = min(1, max(0, ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)))
+                feet.append((math.hypot(x - ax - s * ux, y - ay - s * uy), uy, -ux))
+            r, nx, ny = min(feet)
+            length = math.hypot(nx, ny)
+            nx, ny = nx / length, ny / length
+            inside = sum((ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax) for (ax, ay), (bx, by) in sides)
+            r = -r if inside % 2 else r
+            if abs(r) < cut:
+                rows.append(((1 - (r / cut) ** 2) ** 2, r, (x * ny - y * nx, nx, ny)))
+        h = [[sum(w * j[a] * j[b] for w, _, j in rows) for b in range(3)] for a in range(3)]
+        g = [-sum(w * r * j[a] for w, r, j in rows) for a in range(3)]
+        for a in range(3):  # Gauss and Jordan
+            for b in range(3):
+                if a != b:
+                    f = h[b][a] / h[a][a]
+                    h[b] = [p - f * q for p, q in zip(h[b], h[a])]
+                    g[b] -= f * g[a]
+        moved = turned(moved, g[0] / h[0][0], (g[1] / h[1][1], g[2] / h[2][2]))
+        cut = max(0.08, cut / 1.5)
+    for points, shift in ((start, (2.3, 1.8)), (moved, (6.7, 1.8))):
+        picture.polygon([(x + shift[0], y + shift[1]) for x, y in contour], SOLID, INK)
+        for x, y in points:
+            picture.dot((x + shift[0], y + shift[1]), BRIGHT, 2.5)
+    picture.arrow((4.2, 1.8), (4.8, 1.8), INK)
+    picture.text((0.8, 0.25), "as it is: near the target")
+    picture.text((5.3, 0.25), "refined: the dent does not pull")
+    return picture
+
+
 def plate_corners():
     """The outermost points of strips, a line through those of each side that agree, and their intersections."""
     picture = Picture(9, 4.2)

@@ -27,6 +27,7 @@ def main():
         ("edge_flip", surfaces.edge_flip),
         ("features", surfaces.features),
         ("fill_holes", cleanups.fill_holes),
+        ("icp", frames.icp),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
         ("normals", cleanups.normals),

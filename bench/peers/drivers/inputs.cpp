@@ -3,7 +3,8 @@
 /// floats work on the same points.
 ///
 /// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT |
-///                    weighted RAW OUT | oriented RAW OUT | soup RAW OUT | holes RAW COUNT OUT
+///                    displaced RAW COUNT OUT | weighted RAW OUT | oriented RAW OUT | soup RAW OUT |
+///                    holes RAW COUNT OUT
 ///   scan          the points of a file, and its triangles if it has any
 ///   torus         350000 or 3500000 evenly spread points in random order, on a bumpy torus with radii 1 and 0.4
 ///   random-torus  independent points, uniform by area, on a torus without bumps with these radii
@@ -12,6 +13,8 @@
 ///   soup          the triangles of RAW, each with three points of its own, and every third one reversed
 ///   holes         RAW without the triangles within four edges of COUNT vertices, which are spread over the rows
 ///   around        points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
+///   displaced     points uniform on the triangles of RAW with normally distributed noise of 0.02 % of its diagonal
+///                 along each axis; all turned by 1 degree about (1, 2, 3) and moved by 1 % of the diagonal along x
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -23,6 +26,7 @@
 #include "answer.hpp"
 #include "delaunay/point_weights.hpp"
 #include "scanmill/base/random.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "support/point_sets.hpp"
@@ -106,15 +110,17 @@ std::vector<double> areas_up_to(const RawInput& mesh) {
     return sums;
 }
 
-RawInput around(const RawInput& mesh, std::size_t count) {
-    if (mesh.triangles.empty()) throw std::runtime_error("`around` needs a mesh, and the input has no triangles");
+scanmill::BoundingBox box_of(const RawInput& mesh) {
+    scanmill::BoundingBox box;
+    for (const auto& p : mesh.points) box.add(Vec3(p.data()));
+    return box;
+}
+
+/// Points uniform on the triangles, each changed by `change(point, random)`.
+template <class Change>
+RawInput sampled(const RawInput& mesh, std::size_t count, Change&& change) {
+    if (mesh.triangles.empty()) throw std::runtime_error("points need a mesh, and the input has no triangles");
     const std::vector<double> areas = areas_up_to(mesh);
-    Vec3 low = corner(mesh, 0), high = low;
-    for (const auto& p : mesh.points) {
-        low = low.cwiseMin(Vec3(p.data()));
-        high = high.cwiseMax(Vec3(p.data()));
-    }
-    const double amount = 0.01 * (high - low).norm();
     scanmill::Random random(1);
     RawInput raw;
     for (std::size_t i = 0; i < count; ++i) {
@@ -122,10 +128,28 @@ RawInput around(const RawInput& mesh, std::size_t count) {
         const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(chosen - areas.begin())];
         const double root = std::sqrt(random.uniform()), share = random.uniform();
         Vec3 p = (1 - root) * corner(mesh, a) + root * (1 - share) * corner(mesh, b) + root * share * corner(mesh, c);
-        for (int axis = 0; axis < 3; ++axis) p[axis] += random.uniform(-amount, amount);
+        change(p, random);
         raw.points.push_back(rounded(p));
     }
     return raw;
+}
+
+RawInput around(const RawInput& mesh, std::size_t count) {
+    const double amount = 0.01 * box_of(mesh).diagonal();
+    return sampled(mesh, count, [&](Vec3& p, scanmill::Random& random) {
+        for (int axis = 0; axis < 3; ++axis) p[axis] += random.uniform(-amount, amount);
+    });
+}
+
+RawInput displaced(const RawInput& mesh, std::size_t count) {
+    const scanmill::BoundingBox box = box_of(mesh);
+    const double diagonal = box.diagonal();
+    const Vec3 centre = (box.low + box.high) / 2, shift = 0.01 * diagonal * Vec3::UnitX();
+    const Eigen::AngleAxisd turn(std::numbers::pi / 180, Vec3(1, 2, 3).normalized());
+    return sampled(mesh, count, [&](Vec3& p, scanmill::Random& random) {
+        for (int axis = 0; axis < 3; ++axis) p[axis] += 0.0002 * diagonal * random.normal();
+        p = turn * (p - centre) + centre + shift;
+    });
 }
 
 RawInput weighted(const RawInput& given) {
@@ -187,6 +211,8 @@ int main(int argc, char** argv) try {
         write_raw(words[2], random_torus(std::stoul(words[1])));
     else if (words.size() == 4 && words[0] == "around")
         write_raw(words[3], around(peers::read_raw(words[1]), std::stoul(words[2])));
+    else if (words.size() == 4 && words[0] == "displaced")
+        write_raw(words[3], displaced(peers::read_raw(words[1]), std::stoul(words[2])));
     else if (words.size() == 3 && words[0] == "weighted")
         write_raw(words[2], weighted(peers::read_raw(words[1])));
     else if (words.size() == 3 && words[0] == "oriented")
@@ -198,7 +224,7 @@ int main(int argc, char** argv) try {
     else
         throw std::runtime_error(
             "usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT | "
-            "weighted RAW OUT | oriented RAW OUT | soup RAW OUT | holes RAW COUNT OUT");
+            "displaced RAW COUNT OUT | weighted RAW OUT | oriented RAW OUT | soup RAW OUT | holes RAW COUNT OUT");
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

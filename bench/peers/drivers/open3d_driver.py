@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Open3D: voxels, normals, alpha shapes, Poisson reconstruction, distances, decimation."""
+"""Open3D: voxels, normals, alpha shapes, Poisson reconstruction, distances, decimation, registration."""
+import math
+
 import numpy
 import open3d
 
@@ -119,9 +121,27 @@ def render(request):
     return {"seconds": seconds, "covered": float(numpy.isfinite(distances).mean())}
 
 
+def icp(request):
+    """The motion from the second input to the points of the first, point to plane, from where they are."""
+    registration = open3d.pipelines.registration
+    source = open3d.geometry.PointCloud(held["truth"].vertices)
+    box = source.get_axis_aligned_bounding_box()
+    limit = request["max_distance"] / 100 * float(numpy.linalg.norm(box.get_extent()))
+    end = registration.ICPConvergenceCriteria(relative_fitness=1e-9, relative_rmse=1e-9, max_iteration=50)
+    seconds, found = timed(lambda: registration.registration_icp(
+        source, held["cloud"], limit, numpy.eye(4), registration.TransformationEstimationPointToPlane(), end))
+    motion, centre = found.transformation, box.get_center()
+    return {
+        "seconds": seconds,
+        "angle": math.degrees(math.acos((numpy.trace(motion[:3, :3]) - 1) / 2)),
+        "shift": float(numpy.linalg.norm(motion[:3, :3] @ centre + motion[:3, 3] - centre)),
+        "residual": found.inlier_rmse,
+    }
+
+
 answer(
     {"load": load, "voxel-thin": voxel_thin, "normals": normals, "alpha-shape": alpha_shape, "poisson": poisson,
-     "measure": measure, "distances": distances, "decimate": decimate,
+     "measure": measure, "distances": distances, "decimate": decimate, "icp": icp,
      "render": render},
     {"Open3D": open3d.__version__},
 )

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -13,6 +14,7 @@
 #include "decimate/decimate.hpp"
 #include "delaunay/delaunay.hpp"
 #include "fill_holes/fill_holes.hpp"
+#include "icp/icp.hpp"
 #include "measure/measure.hpp"
 #include "normals/normals.hpp"
 #include "outlier_removal/outlier_removal.hpp"
@@ -388,6 +390,26 @@ Json drawn(Held& held, const Json& request) {
     return {{"seconds", seconds}, {"covered", covered / static_cast<double>(picture.pixels.size())}};
 }
 
+/// The motion from the second input to the points of the first, with their normals. "max_distance" is in percent of the
+/// diagonal.
+Json refined(Held& held, const Json& request) {
+    PointCloud source;
+    source.positions = held.queries;
+    const BoundingBox box = bounding_box(held.queries);
+    IcpParams params;
+    params.max_distance = request.at("max_distance").get<double>() / 100 * box.diagonal();
+    Context context = context_for(request);
+    IcpResult result;
+    const double seconds = peers::seconds_of([&] { result = icp(source, held.cloud, params, context); });
+    const Vec3 centre = (box.low + box.high) / 2;
+    const Eigen::Matrix3d& rotation = result.transform.rotation;
+    return {{"seconds", seconds},
+            {"angle", std::acos((rotation.trace() - 1) / 2) * 180 / std::numbers::pi},
+            {"shift", (result.transform.apply(centre) - centre).norm()},
+            {"residual", result.rms},
+            {"iterations", result.iterations}};
+}
+
 }  // namespace
 
 int main() {
@@ -416,6 +438,7 @@ int main() {
                           {"region-grow", with_held(grown)},
                           {"cluster-mesh", with_held(clustered)},
                           {"decimate", with_held(decimated)},
+                          {"icp", with_held(refined)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }

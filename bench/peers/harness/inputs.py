@@ -66,6 +66,10 @@ class Inputs:
         """The vertices of a mesh with its normals in NAME.normals, and without its triangles."""
         return self._made_of("oriented", mesh, "vertices with normals of the mesh")
 
+    def displaced(self, mesh, count):
+        """Seeded points on a mesh with noise of 0.02 % of its diagonal, turned by 1 degree and moved by 1 % of it."""
+        return self._made_of("displaced", mesh, "points on it with noise, 1 degree and 1 % away, seed 1", str(count))
+
     def soup(self, mesh):
         """The triangles of a mesh, each with three points of its own, and every third one reversed."""
         return self._made_of("soup", mesh, "every triangle with its own points, every third one reversed")
