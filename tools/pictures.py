@@ -28,6 +28,7 @@ def main():
         ("features", surfaces.features),
         ("fill_holes", cleanups.fill_holes),
         ("icp", frames.icp),
+        ("inspect", surfaces.inspect),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
         ("normals", cleanups.normals),

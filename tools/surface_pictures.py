@@ -332,3 +332,37 @@ def measure():
     picture.text((6.85, 2.15), "mesh: too much")
     picture.text((0.9, 2.9), "truth: missing", BRIGHT)
     return picture
+
+
+def inspect():
+    """Points beside an open profile, with the ways to its nearest points; those beyond its ends are not counted."""
+    picture = Picture(9, 3.6)
+    nominal = [(1.2, 0.9), (3.0, 0.9), (3.0, 2.3), (5.6, 2.3), (6.2, 1.2), (7.9, 1.2)]
+    source = random.Random(8)
+    inside, outside = "#3e80be", "#de6634"
+    scan = []
+    for x, y in spread_over(nominal, 0.16):
+        (u, v), way = nearest_on_profile((x, y), nominal), source.gauss(0, 0.03)
+        way += 0.45 * max(0, 1 - abs(x - 4.3) / 0.7) * (y == 2.3) - 0.35 * max(0, 1 - abs(x - 7.1) / 0.6) * (y == 1.2)
+        across = {0.9: (0, 1), 2.3: (0, 1), 1.2: (0, 1)}.get(y, (-1, 0) if x == 3.0 else (0.88, 0.48))
+        scan.append((u + way * across[0], v + way * across[1]))
+    scan += [(0.4 + 0.16 * i, 1.0 - 0.05 * i) for i in range(4)] + [(8.15 + 0.16 * i, 1.25 + 0.1 * i) for i in range(4)]
+    picture.polygon([*nominal, (7.9, 0.3), (1.2, 0.3)], SOLID, SOLID)
+    for p, q in itertools.pairwise(nominal):
+        picture.line(p, q, INK, 2)
+    for p in scan:
+        foot = nearest_on_profile(p, nominal)
+        beyond = p[0] < nominal[0][0] or p[0] > nominal[-1][0]
+        if beyond:
+            picture.dot(p, PALE, 4)
+            continue
+        (a, b) = min(itertools.pairwise(nominal), key=lambda edge: math.dist(p, nearest_on_profile(p, edge)))
+        side = (b[0] - a[0]) * (p[1] - foot[1]) - (b[1] - a[1]) * (p[0] - foot[0])
+        colour = outside if side > 0 else inside
+        if math.dist(p, foot) > 0.1:
+            picture.line(p, foot, colour, 1.5)
+        picture.dot(p, colour if math.dist(p, foot) > 0.1 else INK, 4 if math.dist(p, foot) > 0.1 else 2.5)
+    picture.text((3.75, 3.1), "+ outside", outside)
+    picture.text((6.65, 0.5), "\u2212 inside", inside)
+    picture.text((0.1, 1.5), "beyond the border", "#777777")
+    return picture
