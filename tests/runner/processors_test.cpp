@@ -54,6 +54,7 @@ const std::vector<Step> steps{
     {"reduced", "decimate", "max-error: 1 %diag", "mesh: sculpted"},
     {"lines", "features", "", "mesh: filled"},
     {"measured", "measure", "certify: true", "mesh: reduced, truth: sculpted"},
+    {"inspected", "inspect", "tolerance: [-0.02 u, 0.02 u], by: patches", "scan: thinned, nominal: reduced"},
     {"surface", "a-patch", "", "mesh: reduced, points: thinned"},
     {"fine", "tessellate", "", "patches: surface"},
     {"distances", "patch-distance", "", "patches: surface, points: thinned"},

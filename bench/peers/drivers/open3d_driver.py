@@ -95,6 +95,21 @@ def distances(request):
     return of_distances(building + asking, building, found.numpy())
 
 
+def inspect(request):
+    """Signed distances and their statistics; there is no map."""
+
+    def work():
+        scene = open3d.t.geometry.RaycastingScene(nthreads=request["threads"])
+        scene.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(held["mesh"]))
+        found = scene.compute_signed_distance(held["queries"], nthreads=request["threads"]).numpy().astype("float64")
+        is_in_tolerance = numpy.abs(found) <= request["tolerance"]
+        return numpy.sqrt((found**2).mean()), found.min(), found.max(), is_in_tolerance.mean()
+
+    seconds, (rms, least, largest, share) = timed(work)
+    return {"seconds": seconds, "rms": float(rms), "min": float(least), "max": float(largest),
+            "in_tolerance": float(share)}
+
+
 def decimate(request):
     seconds, mesh = timed(lambda: held["mesh"].simplify_quadric_decimation(request["triangles"]))
     return of_decimation(request, seconds, mesh.vertices, mesh.triangles)
@@ -142,6 +157,6 @@ def icp(request):
 answer(
     {"load": load, "voxel-thin": voxel_thin, "normals": normals, "alpha-shape": alpha_shape, "poisson": poisson,
      "measure": measure, "distances": distances, "decimate": decimate, "icp": icp,
-     "render": render},
+     "inspect": inspect, "render": render},
     {"Open3D": open3d.__version__},
 )

@@ -15,6 +15,7 @@
 #include "delaunay/delaunay.hpp"
 #include "fill_holes/fill_holes.hpp"
 #include "icp/icp.hpp"
+#include "inspect/inspect.hpp"
 #include "measure/measure.hpp"
 #include "normals/normals.hpp"
 #include "outlier_removal/outlier_removal.hpp"
@@ -289,6 +290,25 @@ Json distances(Held& held, const Json& request) {
             {"max", *std::ranges::max_element(found.distances)}};
 }
 
+/// The whole filter on the held mesh as the nominal, with statistics, labels and the map.
+Json inspected(Held& held, const Json& request) {
+    const double tolerance = request.at("tolerance").get<double>();
+    InspectParams params;
+    params.tolerance = {-tolerance, tolerance};
+    params.max_distance = request.at("max_distance").get<double>();
+    PointCloud scan;
+    scan.positions = held.queries;
+    const TriangleMesh nominal = held.mesh();
+    Context context = context_for(request);
+    Inspection found;
+    const double seconds = peers::seconds_of([&] { found = inspect(scan, nominal, nullptr, params, context); });
+    return {{"seconds", seconds},
+            {"rms", found.numbers.rms},
+            {"min", found.numbers.min},
+            {"max", found.numbers.max},
+            {"in_tolerance", found.numbers.in_tolerance}};
+}
+
 Json reconstructed(Held& held, const Json& request) {
     PoissonParams params;
     params.depth = request.at("depth").get<u32>();
@@ -439,6 +459,7 @@ int main() {
                           {"cluster-mesh", with_held(clustered)},
                           {"decimate", with_held(decimated)},
                           {"icp", with_held(refined)},
+                          {"inspect", with_held(inspected)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }
