@@ -125,8 +125,8 @@ void refuse_without_points(const Inspection& inspected, const Extents& extents, 
     if (inspected.beyond_border > 0) add("set borders: include to count points beyond the border");
     if (inspected.undecided > 0) add("mend the nominal's triangles with repair");
     if (inspected.cut > 0) add(fmt::format("set a sigma above {}, or none", number_text(params.sigma.value_or(0))));
-    const std::string points = inspected.points == 1 ? "the only point cannot"
-                                                     : fmt::format("none of the {} points can", inspected.points);
+    const std::string points =
+        inspected.points == 1 ? "the only point cannot" : fmt::format("none of the {} points can", inspected.points);
     throw Error("{} be inspected: {}; the scan extends from {}, the nominal from {} ({}){}", points,
                 amounts_text(inspected), range_text(extents.scan), range_text(extents.nominal), symbol(extents.unit),
                 inspected.too_far > 0 ? suspicion : "")

@@ -50,7 +50,7 @@ Decoded decoded(const std::string& bytes) {
 }
 
 /// A PNG made by libpng's simplified interface from samples of this format (PNG_FORMAT_…).
-std::string encoded(u32 width, u32 height, u32 format, const void* samples, const void* colour_map = nullptr,
+std::string encoded(u32 width, u32 height, u32 format, const void* numbers, const void* colour_map = nullptr,
                     u32 colours = 0) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -60,15 +60,15 @@ std::string encoded(u32 width, u32 height, u32 format, const void* samples, cons
     image.colormap_entries = colours;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string bytes(size, '\0');
-    EXPECT_TRUE(png_image_write_to_memory(&image, bytes.data(), &size, 0, samples, 0, colour_map)) << image.message;
+    EXPECT_TRUE(png_image_write_to_memory(&image, bytes.data(), &size, 0, numbers, 0, colour_map)) << image.message;
     bytes.resize(size);
     return bytes;
 }
 
 std::vector<u8> samples_of(const Picture& picture) {
-    std::vector<u8> samples;
-    for (const Colour& pixel : picture.pixels) samples.insert(samples.end(), pixel.begin(), pixel.end());
-    return samples;
+    std::vector<u8> numbers;
+    for (const Colour& pixel : picture.pixels) numbers.insert(numbers.end(), pixel.begin(), pixel.end());
+    return numbers;
 }
 
 u32 big_endian_at(std::string_view bytes, std::size_t at) {
