@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
+.PHONY: help demo nightly paper pictures test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -22,6 +22,9 @@ nightly: release ## compare four surfaces of virtual scans with the accepted run
 
 paper: release data ## make docs/bernardini-1997.md: every stage of the paper's pipeline on one scan, with pictures
 	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
+
+pictures: release data ## draw the pictures of README and pages with the filter render
+	tools/rendered_pictures.sh build/release/bin/scanmill build/data
 
 test: dev data ## build with assertions on and run every test
 	tools/test.sh dev -j $(jobs)

@@ -61,8 +61,8 @@ public:
         const auto x = static_cast<std::int64_t>(std::floor(place.x)),
                    y = static_cast<std::int64_t>(std::floor(place.y));
         if (depths_.visible(view_, x, y, place.depth - tolerance_) == 0) return true;
-        const double width = font_.width(dot.label, size_), near = 0.8 * size_, far = 2 * size_;
-        for (const double reach : {near, far})
+        const double width = font_.width(dot.label, size_), near = 0.8 * size_;
+        for (const double reach : {near, 2.5 * near, 4 * near, 6 * near})
             for (const auto& [right, up] : {std::pair(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
                 const double left = place.x + (right > 0 ? reach : -reach - width);
                 const double base = place.y - (up > 0 ? 0.5 * reach : -0.5 * reach - 0.8 * size_);

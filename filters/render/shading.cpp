@@ -27,9 +27,9 @@ constexpr Colour clay = {226, 219, 204}, clay_from_behind = {120, 144, 176}, cro
 constexpr double everywhere = 0.20, upper_left = 0.62, from_camera = 0.32;
 /// Surfaces that show values have light from the camera only, so that a face towards the camera has the legend's
 /// colour.
-constexpr double least_light_of_values = 0.4;
+constexpr double least_light_of_values = 0.75;
 /// Share of light that ambient occlusion can take away.
-constexpr double occlusion_of_plain = 0.75, occlusion_of_values = 0.4;
+constexpr double occlusion_of_plain = 0.75, occlusion_of_values = 0.25;
 
 /// Reflected bands over the sphere of directions.
 constexpr double bands = 9;

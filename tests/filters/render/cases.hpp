@@ -40,6 +40,22 @@ inline int difference(const Colour& one, const Colour& other) {
     return largest;
 }
 
+/// Whether a colour is this one, laid over white with a share of at least 0.3.
+inline bool is_tinted(const Colour& colour, const Colour& ink) {
+    double share = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (ink[i] < 255) share = std::max(share, (255.0 - colour[i]) / (255 - ink[i]));
+    if (share < 0.3 || share > 1.1) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (std::abs(255 - share * (255 - ink[i]) - colour[i]) > 25) return false;
+    return true;
+}
+
+/// A square around the origin, facing up.
+inline TriangleMesh centred_square(double side, double height = 0) {
+    return shifted(rectangle(side, side), {-side / 2, -side / 2, height});
+}
+
 template <class Wanted>
 std::size_t count_pixels(const Picture& picture, Wanted&& wanted) {
     return static_cast<std::size_t>(std::ranges::count_if(picture.pixels, wanted));

@@ -47,7 +47,7 @@ TEST(RenderPoints, OnePoint_IsDrawn) {
 TEST(RenderPoints, PlaneOfPoints_HasTheLightOfAPlane) {
     // Normals come from the depths around a pixel: a plane of points looks like the plane.
     const PointCloud cloud = grid(40);
-    const TriangleMesh plane = rectangle(1, 1);
+    const TriangleMesh plane = centred_square(1);
     const Colour points = pixel(picture_of(&cloud, from_above()), 100, 100),
                  mesh = pixel(picture_of(&plane, from_above()), 100, 100);
     EXPECT_LE(difference(points, mesh), 4);
@@ -73,7 +73,7 @@ TEST(RenderLines, Features_HaveTheColoursOfTheirTypes) {
     graph.corners = Array<u32>{3};
     const Picture picture = picture_of(&graph, from_above());
     const auto has = [&](u32 y, const Colour& wanted) {
-        return is_near(pixel(picture, 100, y), wanted) || is_near(pixel(picture, 100, y - 1), wanted);
+        return is_tinted(pixel(picture, 100, y), wanted) || is_tinted(pixel(picture, 100, y - 1), wanted);
     };
     EXPECT_TRUE(has(190, blue));
     EXPECT_TRUE(has(100, {30, 30, 30}));
@@ -83,7 +83,7 @@ TEST(RenderLines, Features_HaveTheColoursOfTheirTypes) {
 }
 
 TEST(RenderLines, Probes_ShowTouchesAndApproaches) {
-    const TriangleMesh plate = rectangle(2, 2);
+    const TriangleMesh plate = centred_square(2);
     ProbePlan plan;
     ProbeTouch made;
     made.position = {0, 0, 0};
@@ -95,7 +95,7 @@ TEST(RenderLines, Probes_ShowTouchesAndApproaches) {
     plan.touches = {made, not_made};
     const Picture picture = picture_of(&plate, from_above(), 2, &plan);
     EXPECT_TRUE(is_near(pixel(picture, 100, 100), green));
-    EXPECT_TRUE(is_near(pixel(picture, 140, 100), blue) || is_near(pixel(picture, 140, 99), blue));
+    EXPECT_LT(pixel(picture, 140, 100)[0] + 30, pixel(picture, 140, 60)[0]) << "a blue line on clay has less red";
     EXPECT_TRUE(is_near(pixel(picture, 100, 172), vermillion));
 }
 
@@ -126,8 +126,8 @@ TEST(RenderMarks, Creases_AreTheDeclaredOnesOrThoseByAngle) {
 }
 
 TEST(RenderMarks, Intersections_AreMagentaAndCounted) {
-    const TriangleMesh one = rectangle(2, 2), other = turned(rectangle(2, 2), 90 * degree, Vec3::UnitX());
-    const TriangleMesh crossing = both(one, other);
+    const TriangleMesh one = centred_square(2), other = turned(centred_square(2), 90 * degree, Vec3::UnitX());
+    const TriangleMesh crossing = both(one, other);  // along the x axis
     RenderParams params = from_above();
     params.intersections = true;
     const Picture picture = picture_of(&crossing, params);
@@ -137,7 +137,7 @@ TEST(RenderMarks, Intersections_AreMagentaAndCounted) {
 }
 
 TEST(RenderMarks, Edges_DrawTheDiagonalOfASquare) {
-    const TriangleMesh square = rectangle(2, 2);
+    const TriangleMesh square = centred_square(2);
     RenderParams params = from_above();
     const double plain = brightness(pixel(picture_of(&square, params), 100, 100));
     params.edges = true;
@@ -152,7 +152,7 @@ TEST(RenderStyle, Lines_AreBandsOnACurvedSurfaceAndNoneOnAPlane) {
     RenderParams params = from_above();
     params.style = RenderParams::Style::lines;
     const auto is_dark = [](const Colour& c) { return brightness(c) < 100; };
-    const TriangleMesh sphere = geodesic_sphere(1, 20), plane = rectangle(2, 2);
+    const TriangleMesh sphere = geodesic_sphere(1, 20), plane = centred_square(2);
     const Picture round = picture_of(&sphere, params);
     int changes = 0;
     for (u32 y = 11; y < 189; ++y) changes += is_dark(pixel(round, 100, y)) != is_dark(pixel(round, 100, y + 1));
@@ -176,7 +176,7 @@ TEST(RenderLabels, LabelledPoints_ShowTheValueOfTheColouredColumn) {
 }
 
 TEST(RenderLabels, PointsOver_OnlyLabelledOnesIfThereAreLabels) {
-    const TriangleMesh square = rectangle(2, 2);
+    const TriangleMesh square = centred_square(2);
     PointCloud cloud;
     cloud.positions = Array<Vec3>{{0, 0, 0}, {0.5, 0.5, 0}, {-0.5, 0, 0}};
     Context context;
@@ -224,15 +224,18 @@ TEST(RenderLegend, Bar_HasTheColoursOfTheScaleAndTheTextsInk) {
     params.legend = false;
     const Picture without = picture_of(&square, params);
     EXPECT_FALSE(picture == without);
-    const auto shows = [&](double value) {
-        return count_pixels(picture, [&](const Colour& c) { return c == colour_of({-1, 1}, value); }) > 0;
+    const auto shows = [&](double value) {  // the bar is beside the scene
+        for (u32 y = 0; y < 300; ++y)
+            for (u32 x = 300; x < 400; ++x)
+                if (difference(pixel(picture, x, y), colour_of({-1, 1}, value)) <= 3) return true;
+        return false;
     };
     EXPECT_TRUE(is_near(pixel(picture, 399, 0), {255, 255, 255}));
     std::size_t ink = 0;
     for (u32 y = 0; y < 300; ++y)
         for (u32 x = 300; x < 400; ++x) ink += brightness(pixel(picture, x, y)) < 60;
     EXPECT_GT(ink, 100u) << "numbers and words";
-    EXPECT_TRUE(shows(-1) || shows(-0.99) || shows(-0.98));
+    for (const double value : {-0.99, -0.5, -0.25, 0.25, 0.5, 0.99}) EXPECT_TRUE(shows(value)) << value;
 }
 
 TEST(RenderLegend, ScaleTexts_HaveTheDecimalsThatTheWidthNeeds) {

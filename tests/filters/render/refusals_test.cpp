@@ -40,7 +40,7 @@ TEST(RenderRefuses, CloudAndFeaturesAndPatchesThatAreEmpty) {
 }
 
 TEST(RenderRefuses, CoordinatesThatAreNotFinite) {
-    TriangleMesh mesh = rectangle(1, 1);
+    TriangleMesh mesh = centred_square(1);
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     positions[2].y() = nan;
     mesh.positions = std::move(positions);
@@ -48,7 +48,7 @@ TEST(RenderRefuses, CoordinatesThatAreNotFinite) {
     PointCloud cloud;
     cloud.positions = Array<Vec3>{{infinity, 0, 0}};
     EXPECT_THAT(error_of([&] { picture_of(&cloud); }).sentence(), HasSubstr("1"));
-    const TriangleMesh good = rectangle(1, 1);
+    const TriangleMesh good = centred_square(1);
     EXPECT_THAT(error_of([&] { picture_of(&good, {}, 1, &cloud); }).sentence(), HasSubstr("1"));
     ProbePlan plan;
     plan.touches.emplace_back().position = {nan, 0, 0};
@@ -61,7 +61,7 @@ TEST(RenderRefuses, ColumnThatDoesNotExist) {
     params.colour = "deviaton";
     EXPECT_THAT(refusal_of(&square, params).sentence(),
                 AllOf(HasSubstr("no column 'deviaton'"), HasSubstr("did you mean 'deviation'")));
-    const TriangleMesh bare = rectangle(1, 1);
+    const TriangleMesh bare = centred_square(1);
     EXPECT_THAT(refusal_of(&bare, params).sentence(), HasSubstr("it has none"));
 }
 
@@ -76,7 +76,7 @@ TEST(RenderRefuses, ColumnOfAKindWithoutColumns) {
 }
 
 TEST(RenderRefuses, ColumnWithSeveralNumbersPerRow) {
-    TriangleMesh square = rectangle(1, 1);
+    TriangleMesh square = centred_square(1);
     square.vertex_columns.add(Column("normal", 3, Buffer<double>(Array<double>(12, 1.0))));
     RenderParams params;
     params.colour = "normal";
@@ -92,7 +92,7 @@ TEST(RenderRefuses, ScaleUpsideDown) {
 }
 
 TEST(RenderRefuses, CamerasThatDoNotFit) {
-    const TriangleMesh square = rectangle(1, 1);
+    const TriangleMesh square = centred_square(1);
     RenderParams params;
     params.look_at = {{Length(0), Length(0), Length(0)}};
     EXPECT_THAT(refusal_of(&square, params).sentence(), HasSubstr("needs an `eye`"));
@@ -118,7 +118,7 @@ TEST(RenderWarns, PictureWithoutRoomForTheLegend) {
 }
 
 TEST(RenderWarns, LabelsWithoutRoom) {
-    const TriangleMesh square = rectangle(1, 1);
+    const TriangleMesh square = centred_square(1);
     PointCloud cloud;
     cloud.positions = Array<Vec3>(30, Vec3(0, 0, 0));
     cloud.columns.add(Column("label", 1, Buffer<u32>(Array<u32>(30, 7))));

@@ -106,7 +106,7 @@ TEST(Render, EqualValues_HaveOneColourAndOneNumber) {
 
 TEST(Render, NearerSurface_HidesTheFartherOneAndItsLines) {
     // A small square above a large one, which has a different colour.
-    const TriangleMesh low = rectangle(4, 4), high = rectangle(2, 2, 1);
+    const TriangleMesh low = centred_square(4), high = centred_square(2, 1);
     TriangleMesh scene = both(low, high);
     scene.face_columns.add(Column("which", 1, Buffer<double>(Array<double>{0, 0, 1, 1})));
     RenderParams params = from_above();
@@ -130,10 +130,10 @@ TEST(Render, NearerSurface_HidesTheFartherOneAndItsLines) {
 }
 
 TEST(Render, CornerBetweenWalls_IsDarkerThanAnOpenFloor) {
-    const TriangleMesh floor = rectangle(4, 4);
+    const TriangleMesh floor = centred_square(4);
     TriangleMesh walls = floor;
     for (const double angle : {90 * degree, -90 * degree}) {
-        TriangleMesh wall = turned(rectangle(4, 4), angle, Vec3::UnitX());
+        TriangleMesh wall = turned(centred_square(4), angle, Vec3::UnitX());
         walls = both(walls, shifted(wall, {0, angle > 0 ? 2.0 : -2.0, 2}));
     }
     const Picture open = picture_of(&floor, from_above()), closed = picture_of(&walls, from_above());
@@ -142,7 +142,7 @@ TEST(Render, CornerBetweenWalls_IsDarkerThanAnOpenFloor) {
 }
 
 TEST(Render, BackOfASurface_HasAnotherColour) {
-    const TriangleMesh square = rectangle(2, 2);
+    const TriangleMesh square = centred_square(2);
     const Colour front = pixel(picture_of(&square, from_above(CameraView::top)), 100, 100),
                  back = pixel(picture_of(&square, from_above(CameraView::bottom)), 100, 100);
     EXPECT_GT(front[0], front[2]) << "clay";
@@ -177,7 +177,7 @@ TEST(Render, ShiftedFrame_GivesTheSamePicture) {
 
 TEST(Render, Truth_SetsTheCamera) {
     // A small square drawn with the camera of a large one covers a quarter of its area.
-    const TriangleMesh large = rectangle(4, 4), small = rectangle(2, 2);
+    const TriangleMesh large = centred_square(4), small = centred_square(2);
     const Picture picture = picture_of(&small, from_above(), 2, {}, &large);
     const std::size_t covered = count_pixels(picture, [](const Colour& c) { return !is_white(c); });
     EXPECT_NEAR(static_cast<double>(covered), 90 * 90, 2 * 90);
@@ -239,8 +239,9 @@ TEST(Render, UpAxis_IsThatOfTheFlatBase) {
 }
 
 TEST(Render, Eye_SeesThePointItLooksAtInTheMiddle) {
-    const TriangleMesh square = rectangle(1, 1);
+    const TriangleMesh square = centred_square(1);
     RenderParams params = from_above();
+    params.camera = RenderParams().camera;
     params.eye = {{Length(0), Length(0), Length(10)}};
     // 40 degrees over 200 pixels: a square of side 1 at distance 10 spans 200 / (2 * 10 * tan 20 deg) pixels.
     const double side = 200 / (20 * std::tan(20 * degree));
@@ -255,7 +256,7 @@ TEST(Render, Eye_SeesThePointItLooksAtInTheMiddle) {
 
 TEST(Render, AutomaticCamera_SeesTheFrontOfAnOpenSurface) {
     // A flat surface seen from either side has the same silhouette; its front counts more.
-    const TriangleMesh front = turned(rectangle(2, 2), 90 * degree, Vec3::UnitX());
+    const TriangleMesh front = turned(centred_square(2), 90 * degree, Vec3::UnitX());
     RenderParams params;
     params.size = {100, 100};
     for (const TriangleMesh& mesh : {front, inside_out(front)}) {

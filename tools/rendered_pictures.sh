@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# rendered_pictures.sh PROGRAM DATA: draws the shaded pictures of README and pages with the filter `render`. DATA is the folder of
+# `make data`.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+program=$(realpath "$1")
+data=$(realpath "$2")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+run() { "$program" run "$@" --no-cache --quiet >/dev/null; }
+
+# draw FILE KIND PARAMETERS PICTURE
+draw() {
+    printf 'scanmill: 1\nname: draw\ninputs: {scene: %s}\nsteps:\n  - render: {%s}\noutputs: {picture.png: render}\n' "$2" "$3" >draw.yaml
+    run draw.yaml "$1" -o drawn
+    mkdir -p "$(dirname "$root/$4")"
+    cp drawn/picture.png "$root/$4"
+}
+
+# The first page: a scan and what becomes of it.
+run raw-scans "$data/points_3/kitten.xyz" -o kitten || true
+draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png
+draw kitten/kitten.ply mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png
+
+# The page of render.
+draw "$data/meshes/fandisk_large.off" mesh 'size: [400, 300], edges: true' filters/render/edges.png
+draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filters/render/picture.png
+draw "$data/meshes/bunny00.off" mesh 'up: y, size: [400, 300], style: lines' filters/render/lines.png
+
+# The page on inspection: its own files and commands.
+awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/docs/inspection.md"
+run scan.yaml -o .
+run inspect part.ply --unit mm --in nominal=block.off --set 'tolerance=[-0.1 mm, 0.1 mm]' -o out || true
+mkdir -p "$root/docs/inspection"
+cp out/failed/part-deviation.png out/failed/part-on-nominal.png "$root/docs/inspection/"
