@@ -27,9 +27,9 @@ constexpr double on_surface = 1e-8;
 /// Number of neighbours of a plane. They reach as far as 4 spacings, which keeps the noise of the normals small enough
 /// that spheres and cylinders are recognised as undetermined.
 constexpr std::size_t neighbours = 50;
-/// A plane is used up to this share of the distance of its farthest neighbour beside its point, about 2 spacings. The
-/// nearest point is at most one spacing beside in a sampled area.
-constexpr double reach_share = 0.5;
+/// A plane is used as far beside its point as this neighbour is away, about 2 spacings. The nearest point is at most one
+/// spacing beside in a sampled area.
+constexpr std::size_t reach_neighbour = 12;
 constexpr double least_flatness = 1e-6;  // least flatness of neighbours that determine a plane, as in normals
 constexpr std::size_t least_positions = 6;
 
@@ -127,7 +127,7 @@ PointsTarget::PointsTarget(const PointCloud& cloud, Context& context)
     reach_.resize(positions.size());
     const Column* column = cloud.columns.find("normal");
     if (column && column->components() != 3) column = nullptr;
-    const std::size_t each = std::min(neighbours, positions.size() - 1);
+    const std::size_t each = std::min(column ? reach_neighbour : neighbours, positions.size() - 1);
     std::atomic<std::size_t> done = 0;
     tree_.for_each_nearest(each, context.threads(), [&](const NeighbourBatch& batch) {
         context.check_cancelled();
@@ -135,7 +135,7 @@ PointsTarget::PointsTarget(const PointCloud& cloud, Context& context)
         for (std::size_t i = 0; i < batch.indices.size(); ++i) {
             const u32 index = batch.indices[i];
             const std::span<const Neighbour> found = batch.of(i);
-            reach_[index] = reach_share * std::sqrt(found.back().squared);
+            reach_[index] = std::sqrt(found[std::min(reach_neighbour, each) - 1].squared);
             if (column) continue;
             offsets.assign(1, Vec3::Zero());
             for (const Neighbour& neighbour : found) offsets.push_back(positions[neighbour.index] - positions[index]);
