@@ -27,8 +27,8 @@ constexpr double on_surface = 1e-8;
 /// Number of neighbours of a plane. They reach as far as 4 spacings, which keeps the noise of the normals small enough
 /// that spheres and cylinders are recognised as undetermined.
 constexpr std::size_t neighbours = 50;
-/// A plane is used as far beside its point as this neighbour is away, about 2 spacings. The nearest point is at most one
-/// spacing beside in a sampled area.
+/// A plane is used as far beside its point as this neighbour is away, about 2 spacings. The nearest point is at most
+/// one spacing beside in a sampled area.
 constexpr std::size_t reach_neighbour = 12;
 constexpr double least_flatness = 1e-6;  // least flatness of neighbours that determine a plane, as in normals
 constexpr std::size_t least_positions = 6;
