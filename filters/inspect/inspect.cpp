@@ -151,7 +151,7 @@ ColourScale scale_of(const Tolerance& tolerance, const DeviationNumbers& numbers
     return widest > 0 ? ColourScale{-widest, widest} : ColourScale{-1, 1};
 }
 
-/// The counted rows, ascending.
+/// The counted rows, in the order of `rows`.
 Array<u32> counted_rows(const Distances& distances, std::span<const u32> rows) {
     Array<u32> counted;
     for (const u32 row : rows)
@@ -339,8 +339,9 @@ Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Rig
         result.label_numbers[row] = static_cast<u32>(result.labels.size());
     }
     context.progress(0.8);
-    result.on_nominal = map_on(nominal, shift, surface, distances, scan, counted, scan.rough_spacing(order),
-                               parts ? &*parts : nullptr, result, context);
+    // Along the curve, points that are averaged together are in the same part of the memory.
+    result.on_nominal = map_on(nominal, shift, surface, distances, scan, counted_rows(distances, order),
+                               scan.rough_spacing(order), parts ? &*parts : nullptr, result, context);
     result.deviations = std::move(distances.deviations);
     context.progress(1);
     return result;
