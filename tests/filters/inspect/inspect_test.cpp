@@ -441,11 +441,11 @@ TEST(InspectMap, Refinement_KeepsTheSurfaceAndIsConforming) {
 
 TEST(InspectMap, ThinWall_DoesNotMixItsSides) {
     const Vec3 size(10, 10, 0.02);
-    const PointCloud all = points_on_box(size, 80, [](int face, const Vec3&) {
+    const PointCloud all = points_on_box(size, 240, [](int face, const Vec3&) {
         return face == 5 ? 0.005 : face == 4 ? -0.003 : 0.0;
     });
-    // The two large faces. The others are much denser, which the map would follow.
-    const PointCloud scan = cloud(Array<Vec3>(all.positions.begin() + 4 * 80 * 80, all.positions.end()));
+    // The two large faces.
+    const PointCloud scan = cloud(Array<Vec3>(all.positions.begin() + 4 * 240 * 240, all.positions.end()));
     const Inspection found = inspected(scan, box(size));
     const Column& deviation = *found.on_nominal.vertex_columns.find("deviation");
     for (std::size_t vertex = 0; vertex < found.on_nominal.positions.size(); ++vertex) {
