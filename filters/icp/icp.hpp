@@ -58,7 +58,9 @@ struct IcpResult {
 /// `cut` begins with `max_distance` and is halved whenever the motion has become small. It ends at 4.685 standard
 /// deviations of the residuals, estimated by their median. Dents and burrs therefore attract the scan only in the first
 /// iterations. Once `cut` has arrived there, the share `trim` of the pairs with the largest residuals does not count
-/// either. Earlier, it would remove those surfaces that show where to move.
+/// either. Earlier, it would remove those surfaces that show where to move. If a smaller cut or trimming left a
+/// direction of motion undetermined that was determined before, the cut stays where it was and nothing is trimmed: both
+/// ends of a part that is too long are then between their faces of the target.
 ///
 /// Motion. Each iteration solves the Gauss-Newton equations H x = -g with H = mean of J^T J, J = (c × n / R, n), over
 /// the weighted pairs: n is the direction of the residual, c the point relative to the pairs' centroid, R the root mean

@@ -11,6 +11,9 @@ namespace {
 /// Widths and radii are given for this height of a text line, which a picture with 600 rows has.
 constexpr double usual_size = 14;
 
+/// Not std::hypot, whose last bits depend on the processor.
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 struct Box {
     double left, top, right, bottom;
     bool meets(const Box& other) const {
@@ -38,7 +41,7 @@ public:
                        [&](std::int64_t x, std::int64_t y) {
                            const double px = x + 0.5 - from.x, py = y + 0.5 - from.y;
                            const double along = squared > 0 ? std::clamp((px * dx + py * dy) / squared, 0.0, 1.0) : 0;
-                           const double distance = std::hypot(px - along * dx, py - along * dy);
+                           const double distance = length(px - along * dx, py - along * dy);
                            lay(x, y, from.depth + along * (to.depth - from.depth), line.colour, half - distance + 0.5);
                        });
     }
@@ -49,7 +52,7 @@ public:
         const double radius = dot.radius * size_ / usual_size;
         for_each_pixel({place.x - radius, place.y - radius, place.x + radius, place.y + radius},
                        [&](std::int64_t x, std::int64_t y) {
-                           const double distance = std::hypot(x + 0.5 - place.x, y + 0.5 - place.y);
+                           const double distance = length(x + 0.5 - place.x, y + 0.5 - place.y);
                            lay(x, y, place.depth, dot.colour, radius - distance + 0.5);
                        });
     }

@@ -68,6 +68,10 @@ const std::vector<Step> steps{
     {"touches", "probe-planner", "radius: 0.05 u, scanner-error: 0.02 u, spacing: 0.2 u, directions: 2",
      "features: moved-lines, mesh: moved"},
     {"touched", "virtual-probe", "noise: 0.001 u", "probes: touches, mesh: moved"},
+    {"picture", "render", "edges: true, boundaries: true, size: [200, 150]", "scene: moved, over: touches"},
+    {"bands", "render", "style: lines, size: [200, 150], camera: [auto, front]", "scene: surface"},
+    {"points-picture", "render", "size: [200, 150], colour: deviation", "scene: inspected.deviation, truth: reduced"},
+    {"perspective", "render", "size: [200, 150], eye: [9 u, 7 u, 5 u], creases: true", "scene: fine, over: lines"},
 };
 
 /// The ports of a filter's outputs with the endings of lossless files for them.
@@ -75,7 +79,10 @@ std::map<std::string, std::string> outputs_of(const json& filter) {
     std::map<std::string, std::string> outputs;
     for (const json& port : filter.at("outputs")) {
         const std::string kind = port.at("kind");
-        outputs[port.at("name")] = kind == "points" || kind == "mesh" ? "ply" : kind == "tets" ? "vtu" : "json";
+        outputs[port.at("name")] = kind == "points" || kind == "mesh" ? "ply"
+                                   : kind == "tets"                   ? "vtu"
+                                   : kind == "picture"                ? "png"
+                                                                      : "json";
     }
     return outputs;
 }

@@ -220,6 +220,29 @@ TEST(IcpAccuracy, ADentAndAPad_DoNotAttractTheScan) {
     }
 }
 
+TEST(IcpAccuracy, APartThatIsTooLong_LiesInTheMiddle) {
+    // Both ends are 0.15 off, far more than the noise of 0.01, but nothing else shows the position along the part.
+    Random random(3);
+    const auto block = [](double length) {
+        return with_positions(shifted(cube(1), -bounding_box(cube(1).positions.span()).low - Vec3(0.5, 0.5, 0.5)),
+                              [&](const Vec3& p) { return Vec3(length * p.x(), 40 * p.y(), 20 * p.z()); });
+    };
+    const TriangleMesh nominal = block(60);
+    const Scan part = scan_of(block(60.3), 20'000, 0.01, random);
+    const RigidTransform motion = motion_about(Vec3::Zero(), 0.5, {1, 2, 2}, {0.6, -0.5, 0.4});
+    std::vector<Vec3> moved;
+    for (const Vec3& point : part.points) moved.push_back(motion.apply(point));
+    Context context;
+    const IcpResult result = icp(cloud(moved), nominal, {}, context);
+    EXPECT_THAT(context.doubts(), testing::IsEmpty());
+    EXPECT_EQ(result.free_directions, 0u);
+    double error = 0;
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        error = std::max(error, (result.transform.apply(moved[i]) - part.points[i]).norm());
+    EXPECT_LT(error, 0.01);
+    EXPECT_GT(result.overlap, 0.99) << "the ends count";
+}
+
 TEST(IcpAccuracy, OfAThinPlate_TheEdgesPlaceItSideways) {
     // 5 % of the area show where the plate of 100 x 80 x 3 is; a share of 10 % that is trimmed too early would be they.
     TriangleMesh plate =
