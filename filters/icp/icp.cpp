@@ -132,32 +132,18 @@ public:
     void run(const std::function<std::string()>& explain) {
         double level = limit_;
         cut_ = limit_;
-        double settled_cut = 0;  // of the last level that is done; 0 before the first
-        u32 settled_free = 0;
-        bool is_held = false;
         for (;; ++result_.iterations) {
             context_.check_cancelled();
             find_pairs();
             if (result_.iterations == 0) require_pairs(explain);
             const double tight = tight_cut();
-            const bool is_tight = level <= tight;
-            cut_ = std::min(limit_, std::max(level, tight));
+            const bool is_tight = counts_equally() || level <= tight;
+            cut_ = counts_equally() ? limit_ : std::min(limit_, std::max(level, tight));
             equations_ = equations_of(is_tight ? trim_limit() : cut_);
-            if (!is_held && settled_cut > 0 && equations_.free_directions() > settled_free) {
-                // Faces that are off by more than the noise, such as both ends of a part that is too long, alone
-                // determine a direction.
-                is_held = true;
-                cut_ = level = settled_cut;
-                equations_ = equations_of(cut_);
-            }
             if (result_.converged || result_.iterations == params_.max_iterations) break;
             move();
-            result_.converged = (is_tight || is_held) && result_.last_motion <= result_.tolerance;
-            if (!is_held && result_.last_motion <= settled_share * level) {
-                settled_cut = cut_;
-                settled_free = equations_.free_directions();
-                level /= 2;
-            }
+            result_.converged = is_tight && result_.last_motion <= result_.tolerance;
+            if (result_.last_motion <= settled_share * level) level /= 2;
             context_.progress(0.2 + 0.8 * (result_.iterations + 1.0) / params_.max_iterations);
         }
         summarise(explain);
@@ -169,6 +155,8 @@ public:
     double median_residual() const { return median_; }
 
 private:
+    bool counts_equally() const { return params_.trim.value() == 0; }
+
     void find_pairs() {
         for_each_chunk(context_.threads(), points_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             context_.check_cancelled();
@@ -221,7 +209,7 @@ private:
             const double r = pairs_.residuals[i];
             if (!(std::abs(r) <= largest)) continue;
             const double share = r / cut_, rest = 1 - share * share;
-            weights[i] = rest * rest;
+            weights[i] = counts_equally() ? 1 : rest * rest;
             weight += weights[i];
             sum += weights[i] * (pairs_.points[i] - pose_.pivot);
         }

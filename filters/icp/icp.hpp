@@ -17,7 +17,8 @@ namespace scanmill {
 struct IcpParams {
     /// A point that is farther from the target has no pair. If absent, 5 % of the smaller of the two diagonals.
     std::optional<Length> max_distance;
-    /// Share of the pairs that do not count in the last iterations, those with the largest residuals first.
+    /// Share of the pairs that do not count in the last iterations, those with the largest residuals first. With 0, all
+    /// pairs count equally: least squares.
     Ratio trim = Ratio::percent(10);
     u32 max_iterations = 50;
 };
@@ -58,9 +59,9 @@ struct IcpResult {
 /// `cut` begins with `max_distance` and is halved whenever the motion has become small. It ends at 4.685 standard
 /// deviations of the residuals, estimated by their median. Dents and burrs therefore attract the scan only in the first
 /// iterations. Once `cut` has arrived there, the share `trim` of the pairs with the largest residuals does not count
-/// either. Earlier, it would remove those surfaces that show where to move. If a smaller cut or trimming left a
-/// direction of motion undetermined that was determined before, the cut stays where it was and nothing is trimmed: both
-/// ends of a part that is too long are then between their faces of the target.
+/// either. Earlier, it would remove those surfaces that show where to move. With `trim` 0 all pairs have the weight 1,
+/// so a part that is too long comes to lie in the middle; with other values, it comes to lie at one end, or the
+/// position along it is not determined.
 ///
 /// Motion. Each iteration solves the Gauss-Newton equations H x = -g with H = mean of J^T J, J = (c × n / R, n), over
 /// the weighted pairs: n is the direction of the residual, c the point relative to the pairs' centroid, R the root mean

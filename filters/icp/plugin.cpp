@@ -36,9 +36,11 @@ SCANMILL_FILTER() {
                "Points farther than this from the target have no pair; `auto` is 5 % of the smaller diagonal. Within "
                "it, the filter finds by itself which residuals are too large to count.",
                above(0), word("auto"))
-        .param("trim", &P::trim,
-               "Share of the pairs that do not count in the last iterations, those with the largest residuals first.",
-               at_least(0), below(1))
+        .param(
+            "trim", &P::trim,
+            "Share of the pairs that do not count in the last iterations, those with the largest residuals first. With "
+            "0 %, all pairs count equally: least squares.",
+            at_least(0), below(1))
         .param("max-iterations", &P::max_iterations,
                "Number of iterations after which the result is doubtful if it still moves.", at_least(1))
         .metric("rms", Unit::length, "Root mean square residual of the points that lie on the target.", headline,
