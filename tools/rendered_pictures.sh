@@ -12,23 +12,26 @@ cd "$folder"
 
 run() { "$program" run "$@" --no-cache --quiet >/dev/null; }
 
-# draw FILE KIND PARAMETERS PICTURE
+# draw FILE KIND PARAMETERS PICTURE [MESH]: MESH sets the camera.
 draw() {
-    printf 'scanmill: 1\nname: draw\ninputs: {scene: %s}\nsteps:\n  - render: {%s}\noutputs: {picture.png: render}\n' "$2" "$3" >draw.yaml
-    run draw.yaml "$1" -o drawn
+    printf 'scanmill: 1\nname: draw\ninputs: {scene: %s, truth: mesh}\nsteps:\n  - render: {%s}\n    in: {scene: scene, truth: truth}\n' \
+        "$2" "$3" >draw.yaml
+    printf 'outputs: {picture.png: render}\n' >>draw.yaml
+    run draw.yaml "$1" --in "truth=${5:-$1}" -o drawn
     mkdir -p "$(dirname "$root/$4")"
-    cp drawn/picture.png "$root/$4"
+    mv drawn/picture.png "$root/$4"
 }
 
 # The first page: a scan and what becomes of it.
-run raw-scans "$data/points_3/kitten.xyz" -o kitten || true
-draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png
-draw kitten/kitten.ply mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png
+run raw-scans "$data/points_3/kitten.xyz" -o kitten
+kitten=kitten/raw-scans.ply
+draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png $kitten
+draw $kitten mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png
 
 # The page of render.
-draw "$data/meshes/fandisk_large.off" mesh 'size: [400, 300], edges: true' filters/render/edges.png
 draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filters/render/picture.png
-draw "$data/meshes/bunny00.off" mesh 'up: y, size: [400, 300], style: lines' filters/render/lines.png
+draw "$data/meshes/mannequin-devil.off" mesh 'size: [400, 300], style: lines' filters/render/lines.png
+draw "$data/meshes/elephant-with-holes.off" mesh 'size: [400, 300], edges: true, boundaries: true' filters/render/edges.png
 
 # The page on inspection: its own files and commands.
 awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/docs/inspection.md"

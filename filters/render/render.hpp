@@ -63,7 +63,7 @@ struct RenderInputs {
 /// Surfaces take the normals of the face column `corner-normals` or the vertex column `normal`. Without them, normals
 /// are averaged over the facets around a vertex that are within 40 degrees of the facet. Faces seen from behind are
 /// blue-grey. Points are discs that face their `normal`, else the camera; they
-/// reach to the 6th neighbour, but 0.75 to 3 spacings.
+/// have 0.7 times the distance to the 6th neighbour as radius, but 0.75 to 3 spacings.
 ///
 /// The automatic scale covers 98 % of the values; if they have both signs, it is symmetrical. Values beyond the ends
 /// have the end's colour, NaN is grey. At points and vertices with a column `label` above 0, the value of the coloured

@@ -24,10 +24,10 @@ namespace {
 /// Colours that remain different for colour-blind people (Okabe and Ito 2008).
 constexpr Colour black = {30, 30, 30}, blue = {0, 114, 178}, vermillion = {213, 94, 0}, green = {0, 158, 115};
 
-/// The radius of a point's disc is the distance to this neighbour, within these limits in spacings. Discs on a grid, or
-/// on scan lines that are farther apart than the points on a line, have no gaps then.
+/// The radius of a point's disc is this share of the distance to this neighbour, within these limits in spacings. Discs
+/// on a grid, or on scan lines that are farther apart than the points on a line, have no gaps then.
 constexpr std::size_t disc_neighbour = 6;
-constexpr double least_disc = 0.75, largest_disc = 3;
+constexpr double disc_share = 0.7, least_disc = 0.75, largest_disc = 3;
 /// Limit between smooth and sharp edges without declared sharp edges, as in `features`.
 constexpr double crease_angle = 40 * std::numbers::pi / 180;
 constexpr double line_width = 1.6, dot_radius = 3.5;
@@ -139,7 +139,7 @@ private:
         tree.for_each_nearest(disc_neighbour, context_.threads(), [&](const NeighbourBatch& batch) {
             for (std::size_t i = 0; i < batch.indices.size(); ++i) {
                 const double reach = batch.each == 0 ? 0 : std::sqrt(batch.of(i).back().squared);
-                by_position[batch.indices[i]] = std::clamp(reach, least_disc * spacing, largest_disc * spacing);
+                by_position[batch.indices[i]] = std::clamp(disc_share * reach, least_disc * spacing, largest_disc * spacing);
             }
         });
         Array<double> radii(positions.size());

@@ -66,6 +66,16 @@ void require_lasting_ply(const Value& value) {
     require_law(write_bytes("copy.ply", copy) == once, "PLY that was read and written again differs");
 }
 
+/// A picture has all its pixels, and PNG keeps them with the caption.
+void require_lasting(const Picture& picture, const Value& value) {
+    require_law(picture.pixels.size() == std::size_t(picture.width) * picture.height && !picture.pixels.empty(),
+                "a picture has another number of pixels than its size");
+    const LoadedFile copy = read_bytes(write_bytes("copy.png", value), "copy.png");
+    const auto& again = *copy.value.get<Picture>();
+    require_law(again.width == picture.width && std::ranges::equal(again.pixels, picture.pixels), "PNG changes pixels");
+    require_law(again.caption == picture.caption, "PNG changes the caption");
+}
+
 void require_coming_back(const Value& value, const Format& format) {
     const std::string name = "copy." + std::string(format.extensions.front());
     std::string bytes;
@@ -93,6 +103,10 @@ bool read_scan(std::string_view extension, std::string_view bytes) {
     } catch (const Error& error) {
         require_law(error.sentence().starts_with("'" + name + "': "), "an error that does not name its file");
         return false;
+    }
+    if (const auto* picture = loaded.value.find<Picture>()) {
+        require_lasting(*picture, loaded.value);
+        return true;
     }
     with_geometry(loaded.value, [](const auto& geometry) {
         require_sound(geometry);

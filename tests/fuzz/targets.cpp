@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 17> table{{
+    static constexpr std::array<FuzzTarget, 18> table{{
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -18,6 +18,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"ptx", [](std::string_view bytes) { return read_scan("ptx", bytes); }},
         {"las", [](std::string_view bytes) { return read_scan("las", bytes); }},
         {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
+        {"png", [](std::string_view bytes) { return read_scan("png", bytes); }},
         {"workflow", check_workflow_text},
         {"batch", check_batch_text},
         {"setting", check_setting},
