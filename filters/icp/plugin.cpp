@@ -48,7 +48,7 @@ SCANMILL_FILTER() {
         .metric(
             "overlap", Unit::ratio,
             "Share of the points that lie on the target: their residual is at most 4.685 standard deviations of the "
-            "residuals.",
+            "residuals; with `trim: 0 %`, at most max-distance.",
             headline, larger_is_better)
         .metric("iterations", Unit::count, "Iterations until no point moved by more than 1/10,000 of the spacing.")
         .metric("slide", Unit::number,

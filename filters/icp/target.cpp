@@ -7,6 +7,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/half_edges.hpp"
 #include "scanmill/data/robust_box.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
@@ -38,15 +39,32 @@ bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
     return area_vector(a, b, c).norm() > least_height * longest;
 }
 
+/// The unit normal in a row of a column with three numbers; zero if it has no direction.
+Vec3 normal_in(const Column& column, std::size_t row) {
+    const Vec3 normal(column.number(row, 0), column.number(row, 1), column.number(row, 2));
+    const double length = normal.stableNorm();
+    return length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+/// Whether a row has a normal. Some files have the column, with zeros.
+bool has_normal(const Column& column) {
+    if (column.components() != 3) return false;
+    for (std::size_t row = 0; row < column.rows(); ++row)
+        if (normal_in(column, row) != Vec3::Zero()) return true;
+    return false;
+}
+
 u64 key_of(u32 a, u32 b) { return static_cast<u64>(std::min(a, b)) << 32 | std::max(a, b); }
 
 /// The edges, as keys, that only one triangle has; ascending. `joined` gives each vertex the number of its position.
 Array<u64> boundary_edges(const TriangleMesh& mesh, std::span<const u32> joined) {
     Array<u64> keys;
     keys.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles)
-        for (int i = 0; i < 3; ++i)
-            if (const u32 a = joined[t[i]], b = joined[t[(i + 1) % 3]]; a != b) keys.push_back(key_of(a, b));
+    for (const Triangle& t : mesh.triangles) {
+        const Triangle corners{joined[t[0]], joined[t[1]], joined[t[2]]};
+        if (half_edges::has_repeated_vertex(corners)) continue;
+        for (std::size_t i = 0; i < 3; ++i) keys.push_back(key_of(corners[i], corners[(i + 1) % 3]));
+    }
     std::ranges::sort(keys);
     Array<u64> single;
     for (std::size_t i = 0, next; i < keys.size(); i = next) {
@@ -126,7 +144,7 @@ PointsTarget::PointsTarget(const PointCloud& cloud, Context& context)
     normals_.assign(positions.size(), Vec3::Zero());
     reach_.resize(positions.size());
     const Column* column = cloud.columns.find("normal");
-    if (column && column->components() != 3) column = nullptr;
+    if (column && !has_normal(*column)) column = nullptr;
     const std::size_t each = std::min(column ? reach_neighbour : neighbours, positions.size() - 1);
     std::atomic<std::size_t> done = 0;
     tree_.for_each_nearest(each, context.threads(), [&](const NeighbourBatch& batch) {
@@ -148,10 +166,8 @@ PointsTarget::PointsTarget(const PointCloud& cloud, Context& context)
     if (!column) return;
     const std::span<const u32> index_of_row = tree_.index_of_row();
     for (std::size_t row = 0; row < cloud.size(); ++row) {
-        const Vec3 normal(column->number(row, 0), column->number(row, 1), column->number(row, 2));
-        const double length = normal.stableNorm();
         Vec3& at_position = normals_[index_of_row[row]];
-        if (length > 0 && std::isfinite(length) && at_position.isZero(0)) at_position = normal / length;
+        if (at_position.isZero(0)) at_position = normal_in(*column, row);
     }
 }
 

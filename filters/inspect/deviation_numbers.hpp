@@ -50,7 +50,7 @@ std::vector<double> histogram_of(std::span<const double> deviations, double low,
 /// Rows of the largest absolute deviations: at most `count`, each at least `distance` from all before it. The next row
 /// is always that with the largest absolute deviation that is far enough from the rows chosen before. Ties: the lowest
 /// row. `rows`: the candidates, ascending.
-/// Cost: O(candidates log candidates) in the worst case, usually linear.
+/// Cost: usually linear; in the worst case O(candidates · count).
 std::vector<u32> largest_apart(std::span<const u32> rows, std::span<const Vec3> positions,
                                std::span<const double> deviations, std::size_t count, double distance,
                                const Execution& execution);

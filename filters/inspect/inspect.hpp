@@ -34,17 +34,17 @@ struct InspectParams {
     /// Points farther than this many standard deviations from the mean are cut from the statistics, once; above 0.
     std::optional<double> sigma;
     /// Points farther from the nominal are too far to belong to it. If absent: 10 times the larger of the tolerance's
-    /// two amounts, at least 3 spacings of the scan.
+    /// two amounts; if points are farther, at least 3 spacings of the scan.
     std::optional<Length> max_distance;
     /// Largest distance of the nominal from the surface that it approximates; for the comparison with the tolerance.
     Length chord_error;
     /// The parts of the nominal that have numbers of their own.
     By by = By::none;
-    /// Number of points that get a label, and the least distance between two of them. Relative lengths refer to the
-    /// scan.
+    /// Number of points that get a label, at most 1,000, and the least distance between two of them. Relative lengths
+    /// refer to the scan.
     u32 labels = 10;
     Length label_distance = Length::percent_of_diagonal(5);
-    /// At least 1.
+    /// From 1 to 10,000.
     u32 bins = 41;
 };
 
@@ -98,8 +98,8 @@ struct Inspection {
     Array<u32> part_numbers;
     /// The nominal with edges of at most max(0.5 % of its diagonal, 3 spacings of the scan), or longer if it would have
     /// more than about 2 million triangles. Vertex columns `deviation` (the mean over the counted points whose nearest
-    /// points are within that length, on the same side; NaN without any) and `colour`. The face columns are those of
-    /// the nominal, and `part`.
+    /// points are within that length, on the same side, nearer ones with more weight; NaN without any) and `colour`.
+    /// The face columns are those of the nominal, and `part`.
     TriangleMesh on_nominal;
 };
 
@@ -119,9 +119,12 @@ struct Inspection {
 ///       finite, no points, a nominal without a triangle that has an area, parameters out of range, and if no point is
 ///       counted.
 /// Post: ties between equally near triangles go to the lowest row. Bytes do not depend on the number of threads.
-///       Doubts a nominal that is inside out or inconsistently oriented, and a scan of which most points are too far.
+///       Doubts a nominal that is inside out or inconsistently oriented, and a scan of which most points are too far or
+///       undecided.
 ///       Warns if the chord error is more than a tenth of the tolerance.
-/// Cost: O(n log F) for n points and F triangles; on two cores about 1 s per million points.
+/// Cost: O(n log F) for n points and F triangles, and the points near every vertex of the map; on two cores about 1 s
+/// per
+///       million points.
 Inspection inspect(const PointCloud& scan, const TriangleMesh& nominal, const RigidTransform* transform,
                    const InspectParams& params, Context& context);
 Inspection inspect(const TriangleMesh& scan, const TriangleMesh& nominal, const RigidTransform* transform,

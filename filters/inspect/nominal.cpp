@@ -99,7 +99,6 @@ void Nominal::find_edges() {
     half_edges::for_each_edge(half_edges::by_smaller_vertex(surface_), [&](u32 smaller, auto edge) {
         const u32 first = edge[0].number;
         if (edge.size() == 1) {
-            is_open_ = true;
             return;
         }
         const bool starts = half_edges::start(surface_, first) == smaller;

@@ -45,7 +45,6 @@ public:
     const Array<u32>& opposites() const { return opposites_; }
     /// Unit normals of the triangles of surface(); see facet_normals().
     const Array<Vec3>& normals() const { return normals_; }
-    bool is_open() const { return is_open_; }
 
     /// Distances up to this are rounding, and 0.
     double rounding() const { return rounding_; }
@@ -78,7 +77,6 @@ private:
     Array<Vec3> vertex_normals_;
     Array<Kind> kinds_;  ///< by vertex
     Lists<u32> corners_;  ///< by vertex; those at a vertex that is not inner, ascending
-    bool is_open_ = false;
 };
 
 }  // namespace scanmill::inspecting

@@ -74,7 +74,7 @@ Filter declaration() {
                above(0), word("none"))
         .param("max-distance", &P::max_distance,
                "Points farther from the nominal are too far to belong to it. `auto` is 10 times the larger amount of "
-               "the tolerance, at least 3 spacings of the scan.",
+               "the tolerance; if points are farther, at least 3 spacings of the scan.",
                above(0), word("auto"))
         .param("chord-error", &P::chord_error,
                "Largest distance of the nominal from the CAD surface, known from its export; compared with the "
@@ -86,10 +86,11 @@ Filter declaration() {
                  {"patches", P::By::patches,
                   "Also numbers for each part of the nominal between its sharp edges (40 degrees)."}},
                 "The parts of the nominal that have numbers of their own, from @2 on.")
-        .param("labels", &P::labels, "Number of points that get a label, the largest absolute deviation first.")
+        .param("labels", &P::labels, "Number of points that get a label, the largest absolute deviation first.",
+               at_most(1000))
         .param("label-distance", &P::label_distance, "Least distance between two labels.", at_least(0))
-        .param("bins", &P::bins, "Number of equal bins of the histogram between range-low and range-high.",
-               at_least(1));
+        .param("bins", &P::bins, "Number of equal bins of the histogram between range-low and range-high.", at_least(1),
+               at_most(10000));
     declare_numbers(filter);
     filter.metric("undecided", Unit::count, "Points left out because their sign is undecided.", smaller_is_better)
         .metric("beyond-borders", Unit::count,

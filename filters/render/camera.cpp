@@ -10,6 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -39,7 +40,7 @@ double base_share(const DrawnScene& scene, int axis) {
     double base = 0, all = 0;
     for (const auto& [a, b, c] : scene.mesh.triangles) {
         const Vec3 &pa = scene.mesh.positions[a], &pb = scene.mesh.positions[b], &pc = scene.mesh.positions[c];
-        const Vec3 normal = (pb - pa).cross(pc - pa);
+        const Vec3 normal = area_vector(pa, pb, pc);
         const double area = normal.norm();
         all += area;
         if (std::max({pa[axis], pb[axis], pc[axis]}) <= limit && normal[axis] <= downwards * area) base += area;
@@ -176,6 +177,7 @@ View::View(std::string name, const Vec3& eye, const Vec3& target, const Vec3& up
     constexpr double half_angle_tangent = 0.36397023426620234;  // of 20 degrees
     turn_to(eye - target, up);
     pixel_ = 2 * half_angle_tangent / std::min(part.width, part.height);
+    least_depth_ = 1e-6 * (eye - target).norm();
 }
 
 void View::turn_to(const Vec3& back, const Vec3& up) {
@@ -188,7 +190,8 @@ Ray View::ray(double x, double y) const {
     const double to_right = (x - part_.x - part_.width / 2.0) * pixel_,
                  upwards = (part_.y + part_.height / 2.0 - y) * pixel_;
     if (is_perspective_) return {eye_, (to_right * right_ + upwards * up_ - back_).normalized()};
-    return {eye_ + to_right * right_ + upwards * up_, -back_};
+    // What lies before the framed positions is seen, too.
+    return {eye_ + to_right * right_ + upwards * up_, -back_, -std::numeric_limits<double>::infinity()};
 }
 
 Projected View::project(const Vec3& position) const {

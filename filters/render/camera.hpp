@@ -15,8 +15,8 @@ struct Rectangle {
     u32 x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A point's place in the picture: the column and row (a pixel's centre is at .5), and its distance from the eye or,
-/// in orthographic views, from a plane before the scene.
+/// A point's place in the picture: the column and row (a pixel's centre is at .5), and its distance from a plane: the
+/// one through the eye, or in orthographic views one before the framed positions.
 struct Projected {
     double x, y, depth;
 };
@@ -34,8 +34,9 @@ public:
     Projected project(const Vec3& position) const;
     /// Width of a pixel at this depth.
     double pixel(double depth) const { return is_perspective_ ? pixel_ * depth : pixel_; }
-    /// Whether a projected position lies before the camera.
-    bool is_before(const Projected& projected) const { return projected.depth > 0; }
+    bool is_perspective() const { return is_perspective_; }
+    /// The least depth of a position that a perspective view shows; minus infinity in orthographic views.
+    double least_depth() const { return least_depth_; }
 
     const std::string& name() const { return name_; }
     const Rectangle& part() const { return part_; }
@@ -54,6 +55,7 @@ private:
     bool is_perspective_;
     Vec3 eye_;  ///< the camera, or the middle of the plane where distances begin
     double pixel_;  ///< width of a pixel; in perspective views at distance 1
+    double least_depth_ = -std::numeric_limits<double>::infinity();
 };
 
 /// One view per camera of the parameters, or one from the eye; side by side in `part`, in rows. `framed` is the scene

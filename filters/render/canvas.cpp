@@ -82,7 +82,7 @@ Font::Font() : library_(std::make_unique<Library>()) {
     if (FT_Init_FreeType(&library_->library) != 0 ||
         FT_New_Memory_Face(library_->library, font_begin, static_cast<FT_Long>(font_end - font_begin), 0,
                            &library_->face) != 0)
-        throw Error("FreeType cannot read the built-in font");
+        throw Error("FreeType cannot read the built-in font").hint("this is a fault of the program; please report it");
 }
 
 Font::~Font() = default;

@@ -43,12 +43,11 @@ Legend legend_of(const DrawnColumn& column) {
     const bool has_both_signs = low < 0 && high > 0;
     std::vector<double> values{low, (low + high) / 2, high};
     if (has_both_signs) values = {low, low / 2, 0, high / 2, high};
-    const double tolerance_low = column.scale.tolerance_low, tolerance_high = column.scale.tolerance_high;
-    if (tolerance_low != tolerance_high) {
-        values = {low};
-        for (const double value : {tolerance_low, 0.0, tolerance_high})
-            if (value > values.back() && value < high) values.push_back(value);
-        values.push_back(high);
+    if (column.scale.has_tolerance()) {
+        values = {low, column.scale.tolerance_low, 0, column.scale.tolerance_high, high};
+        std::ranges::sort(values);
+        values.erase(std::ranges::unique(values).begin(), values.end());
+        std::erase_if(values, [&](double value) { return value < low || value > high; });
     }
     for (const double value : values)
         legend.ticks.push_back({(value - low) / (high - low), scale_text(value, high - low, has_both_signs)});

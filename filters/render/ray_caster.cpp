@@ -10,6 +10,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -100,7 +101,7 @@ struct RayCaster::Scene {
         const double squared_miss = (from_centre + along * ray.direction).squaredNorm();
         const double reach = 1.01 * radius;  // rounding must not make a ray miss the ball
         if (!(squared_miss <= reach * reach)) return std::numeric_limits<double>::infinity();
-        const double start = std::max(0.0, along - 1.5 * radius);
+        const double start = std::max(ray.from, along - 1.5 * radius);
         const Vec3 entry = (from_centre + start * ray.direction) / radius;
         entering.org_x = static_cast<float>(entry.x());
         entering.org_y = static_cast<float>(entry.y());
@@ -155,10 +156,13 @@ RayCaster::RayCaster(std::span<const Vec3> positions, std::span<const Triangle> 
     scene.radius = box.diagonal() / 2;
     if (!(scene.radius > 0)) scene.radius = 1;
 
-    // Embree uses the arena that commits the scene.
-    const std::string configuration = fmt::format("threads={},isa={}", threads, instruction_set);
+    // Without a number of threads, Embree sets no limit for the whole process; the arena that commits the scene has
+    // one.
+    const std::string configuration = fmt::format("isa={}", instruction_set);
     scene.device = rtcNewDevice(configuration.c_str());
-    if (!scene.device) throw Error("Embree does not start: error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
+    if (!scene.device)
+        throw Error("Embree does not start: error {}", static_cast<int>(rtcGetDeviceError(nullptr)))
+            .hint("the package libembree3-3 may be damaged; install it again");
     scene.scene = rtcNewScene(scene.device);
     rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(scene.device, RTC_GEOMETRY_TYPE_USER);
@@ -184,11 +188,7 @@ RayCaster::RayCaster(std::span<const Vec3> positions, std::span<const Triangle> 
         if (!hit.found() || hit.distance > search.best.distance) return;
         if (hit.distance == search.best.distance && hit.item > search.best.item) return;
         search.best = hit;
-        auto& found = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-        found.ray.tfar = above((hit.distance - search.start) / items.radius);
-        found.hit.geomID = arguments->geomID;
-        found.hit.primID = arguments->primID;
-        found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray.tfar = above((hit.distance - search.start) / items.radius);
     });
     rtcSetGeometryOccludedFunction(geometry, [](const RTCOccludedFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
@@ -204,7 +204,8 @@ RayCaster::RayCaster(std::span<const Vec3> positions, std::span<const Triangle> 
     within_thread_budget(threads, [&] { rtcCommitScene(scene.scene); });
     if (const RTCError error = rtcGetDeviceError(scene.device); error != RTC_ERROR_NONE) {
         if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-        throw Error("Embree cannot build the scene: error {}", static_cast<int>(error));
+        throw Error("Embree cannot build the scene: error {}", static_cast<int>(error))
+            .hint("this is a fault of the program; please report it with the scene");
     }
 }
 
@@ -238,9 +239,7 @@ bool RayCaster::is_blocked(const Ray& ray, double until) const {
 
 bool RayCaster::faces(u32 item, const Ray& ray) const {
     if (item >= triangles()) return scene_->discs[item - triangles()].normal.dot(ray.direction) <= 0;
-    const auto& [a, b, c] = scene_->triangles[item];
-    const std::span<const Vec3> positions = scene_->positions;
-    return (positions[b] - positions[a]).cross(positions[c] - positions[a]).dot(ray.direction) <= 0;
+    return area_vector(scene_->positions, scene_->triangles[item]).dot(ray.direction) <= 0;
 }
 
 std::size_t RayCaster::triangles() const { return scene_->triangles.size(); }

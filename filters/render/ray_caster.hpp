@@ -18,7 +18,7 @@ namespace scanmill {
 struct Ray {
     Vec3 origin;
     Vec3 direction;  ///< unit length
-    double from = 0;  ///< hits nearer than this distance do not count; at least 0
+    double from = 0;  ///< hits nearer than this distance do not count; may be negative, for hits behind the origin
 };
 
 /// A disc in space. With a zero normal it faces every ray.
@@ -46,8 +46,8 @@ RayHit hit_disc(const Ray& ray, const Disc& disc);
 
 class RayCaster {
 public:
-    /// The positions, triangles and discs must outlive the object. `instruction_set` is a name that Embree knows; it
-    /// does not change the hits.
+    /// The positions, triangles and discs must outlive the object. `instruction_set` is one of Embree's names; it does
+    /// not change the hits.
     /// Pre: finite coordinates. Throws Error without an item. Cost: O(n log n) time, about 150 bytes per item.
     RayCaster(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::span<const Disc> discs,
               unsigned threads, const char* instruction_set = "sse2");

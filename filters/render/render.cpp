@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr Colour ink = {90, 90, 90};
+constexpr Colour title_ink = {90, 90, 90};
 /// Height of a line of text: 14 pixels in a picture with 600 rows.
 constexpr double text_share = 14.0 / 600;
 constexpr double least_text = 10;
@@ -33,15 +33,21 @@ struct Surface {
     }
 };
 
-Vec3 origin_of(const Drawable& scene) {
+/// nullptr for nothing.
+const Frame* frame_of(const Drawable& drawable) {
     return std::visit(
-        [](const auto& value) -> Vec3 {
+        [](const auto& value) -> const Frame* {
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>)
-                return Vec3::Zero();
+                return nullptr;
             else
-                return value->frame.origin;
+                return &value->frame;
         },
-        scene);
+        drawable);
+}
+
+void require_frame_of_scene(const Drawable& scene, const Drawable& other, std::string_view name) {
+    const Frame *frame = frame_of(scene), *its = frame_of(other);
+    if (frame && its) require_same_frame(*its, fmt::format("{} is", name), *frame, "the scene");
 }
 
 std::string caption_of(const DrawnScene& scene, const std::optional<Legend>& legend, const std::vector<View>& views) {
@@ -59,7 +65,11 @@ std::string caption_of(const DrawnScene& scene, const std::optional<Legend>& leg
 }  // namespace
 
 Picture render(const RenderInputs& inputs, const RenderParams& params, Context& context) {
-    if (params.size.size() != 2) throw Error("`size` needs two numbers: columns and rows");
+    if (params.size.size() != 2)
+        throw Error("`size` has {} numbers; expected two: columns and rows", params.size.size())
+            .hint("write it as [800, 600]");
+    require_frame_of_scene(inputs.scene, inputs.over, "the value at 'over'");
+    require_frame_of_scene(inputs.scene, inputs.truth, "the value at 'truth'");
     const DrawnScene scene = make_scene(inputs, params, context);
     const Surface surface(scene, context.threads());
     context.progress(0.3);
@@ -82,28 +92,33 @@ Picture render(const RenderInputs& inputs, const RenderParams& params, Context& 
         }
     }
 
-    const Vec3 origin = origin_of(inputs.scene);
+    const Vec3 origin = frame_of(inputs.scene)->origin;  // make_scene() refuses a scene without a value
     std::vector<View> views;
     if (!std::holds_alternative<std::monostate>(inputs.truth)) {
         const DrawnScene truth = make_scene({inputs.truth, {}, {}}, {}, context);
         const Surface framed(truth, context.threads());
-        views = views_of(truth, &*framed.caster, origin, params, part, context);
+        views = views_of(truth, framed.caster ? &*framed.caster : nullptr, origin, params, part, context);
     } else {
         views = views_of(scene, surface.caster ? &*surface.caster : nullptr, origin, params, part, context);
     }
     context.progress(0.4);
 
+    const auto progress_at = [&](std::size_t view) {
+        return 0.4 + 0.6 * static_cast<double>(view) / static_cast<double>(views.size());
+    };
     std::size_t hidden_labels = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
+        const double begin = progress_at(i), end = progress_at(i + 1);
         DepthMap depths;
         if (surface.caster)
             depths = shade(canvas, views[i], scene, *surface.caster, surface.normals ? &*surface.normals : nullptr,
-                           params, context);
+                           params, context, {begin + (end - begin) * 0.1, end});
         const double radius = surface.caster ? surface.caster->radius() : 0;
         hidden_labels += draw_overlay(canvas, font, views[i], scene, depths, line_tolerance * radius, size);
         if (views.size() > 1)
-            font.draw(canvas, views[i].name(), views[i].part().x + size, views[i].part().y + 1.5 * size, size, ink);
-        context.progress(0.4 + 0.6 * static_cast<double>(i + 1) / static_cast<double>(views.size()));
+            font.draw(canvas, views[i].name(), views[i].part().x + size, views[i].part().y + 1.5 * size, size,
+                      title_ink);
+        context.progress(end);
     }
     if (hidden_labels > 0)
         context.warn(fmt::format("{} of the labels found no free place in the picture", hidden_labels));

@@ -14,7 +14,11 @@
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill {
@@ -28,9 +32,10 @@ constexpr Colour black = {30, 30, 30}, blue = {0, 114, 178}, vermillion = {213, 
 /// on a grid, or on scan lines that are farther apart than the points on a line, have no gaps then.
 constexpr std::size_t disc_neighbour = 6;
 constexpr double disc_share = 0.7, least_disc = 0.75, largest_disc = 3;
-/// Limit between smooth and sharp edges without declared sharp edges, as in `features`.
-constexpr double crease_angle = 40 * std::numbers::pi / 180;
+/// Limit between smooth and sharp edges without declared sharp edges.
+const double crease_angle = FeatureParams{}.sharp_angle.in_radians();
 constexpr double line_width = 1.6, dot_radius = 3.5;
+constexpr std::size_t most_labels = 1000;
 
 std::string with_separators(std::size_t count) {
     std::string text = std::to_string(count);
@@ -66,7 +71,10 @@ public:
     SceneMaker(const RenderParams& params, Context& context) : params_(params), context_(context) {}
 
     DrawnScene scene(const RenderInputs& inputs) {
+        tolerance_ = limits_of(params_.tolerance, "tolerance");
+        scale_ = limits_of(params_.scale, "scale");
         std::visit([&](const auto& value) { show(value); }, inputs.scene);
+        if (scene_.mesh.triangles.empty()) warn_of_marks();
         if (params_.colour && !scene_.column)
             throw Error("the scene has no columns, so `colour: {}` does not apply", *params_.colour)
                 .hint("`colour` is for meshes and points; leave it out");
@@ -90,6 +98,9 @@ private:
     void show(const TriangleMesh& mesh) {
         scene_.mesh = mesh;
         scene_.summary = counted(mesh.triangles.size(), "triangle", "triangles");
+        if (params_.colour && params_.style == RenderParams::Style::lines)
+            throw Error("`style: lines` shows bands, not the colours of '{}'", *params_.colour)
+                .hint("leave out `style` or `colour`; two steps make two pictures");
         if (params_.colour) {
             const Column* column = mesh.vertex_columns.find(*params_.colour);
             const bool by_face = !column;
@@ -139,7 +150,8 @@ private:
         tree.for_each_nearest(disc_neighbour, context_.threads(), [&](const NeighbourBatch& batch) {
             for (std::size_t i = 0; i < batch.indices.size(); ++i) {
                 const double reach = batch.each == 0 ? 0 : std::sqrt(batch.of(i).back().squared);
-                by_position[batch.indices[i]] = std::clamp(disc_share * reach, least_disc * spacing, largest_disc * spacing);
+                by_position[batch.indices[i]] =
+                    std::clamp(disc_share * reach, least_disc * spacing, largest_disc * spacing);
             }
         });
         Array<double> radii(positions.size());
@@ -210,6 +222,7 @@ private:
     }
 
     void colour_by(const Column& column, bool by_face, const Frame& frame) {
+        context_.check_cancelled();
         DrawnColumn& drawn = scene_.column.emplace();
         drawn.name = column.name();
         drawn.by_face = by_face;
@@ -233,13 +246,12 @@ private:
         if (gaps == rows)
             context_.warn(fmt::format("the column '{}' has no value: the whole scene is grey", column.name()));
         if (column.length_exponent() == 1) drawn.unit = symbol(frame.unit);
-        const auto tolerance = limits_of(params_.tolerance, "tolerance"), ends = limits_of(params_.scale, "scale");
-        const bool has_tolerance = tolerance && (tolerance->low != 0 || tolerance->high != 0);
+        const bool has_tolerance = tolerance_ && (tolerance_->low != 0 || tolerance_->high != 0);
         drawn.scale =
-            has_tolerance ? scale_of_tolerance(tolerance->low, tolerance->high) : automatic_scale(drawn.values);
-        if (ends) {
-            drawn.scale.low = ends->low;
-            drawn.scale.high = ends->high;
+            has_tolerance ? scale_of_tolerance(tolerance_->low, tolerance_->high) : automatic_scale(drawn.values);
+        if (scale_) {
+            drawn.scale.low = scale_->low;
+            drawn.scale.high = scale_->high;
         }
     }
 
@@ -262,32 +274,69 @@ private:
         if (!labels || labels->components() != 1) return;
         const Column* values = params_.colour ? columns.find(*params_.colour) : nullptr;
         if (values && values->components() != 1) values = nullptr;
-        for (std::size_t row = 0; row < positions.size(); ++row) {
-            const double number = labels->number(row);
-            if (!(number > 0)) continue;
-            scene_.dots.push_back({positions[row], black, dot_radius,
-                                   values ? fmt::format("{:+.3g}", values->number(row)) : fmt::format("{}", number)});
+        std::vector<std::size_t> rows;
+        for (std::size_t row = 0; row < positions.size(); ++row)
+            if (labels->number(row) > 0) rows.push_back(row);
+        if (rows.size() > most_labels) {  // a column of classes, for instance
+            context_.warn(
+                fmt::format("the column 'label' has {} values above 0, too many to write; at most {} are "
+                            "written",
+                            rows.size(), most_labels));
+            return;
         }
+        for (const std::size_t row : rows)
+            scene_.dots.push_back(
+                {positions[row], black, dot_radius,
+                 values ? fmt::format("{:+.3g}", values->number(row)) : number_text(labels->number(row))});
     }
 
+    /// Warns that marks of meshes do not apply.
+    void warn_of_marks() const {
+        std::vector<std::string> names;
+        for (const auto& [name, is_wanted] : {std::pair("edges", params_.edges),
+                                              {"boundaries", params_.boundaries},
+                                              {"intersections", params_.intersections},
+                                              {"creases", params_.creases},
+                                              {"style", params_.style == RenderParams::Style::lines}})
+            if (is_wanted) names.push_back(fmt::format("`{}`", name));
+        if (!names.empty())
+            context_.warn(fmt::format("the scene is not a mesh, so {} {} not apply", enumerated(names),
+                                      by_count(names.size(), "does", "do")));
+    }
+
+    /// Boundaries and creases of the mesh with vertices at one position as one vertex, as files with repeated vertices
+    /// mean it.
     void draw_edges(const TriangleMesh& mesh) {
         const bool by_angle = mesh.sharp_edges.empty();
-        const auto normal_of = [&](u32 half_edge) -> Vec3 {
-            const Triangle& t = mesh.triangles[half_edge / 3];
-            return (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
-        };
         const auto add = [&](u32 a, u32 b, Colour colour) {
             scene_.lines.push_back({mesh.positions[a], mesh.positions[b], colour, line_width});
         };
-        const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(mesh);
+        TriangleMesh joined;
+        joined.positions = mesh.positions;
+        const Array<u32> lowest = lowest_at_position(mesh.positions.span());
+        Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+        for (Triangle& triangle : triangles)
+            for (u32& vertex : triangle) vertex = lowest[vertex];
+        joined.triangles = std::move(triangles);
+        const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(joined);
         half_edges::for_each_edge(by_vertex, [&](u32 vertex, std::span<const half_edges::VertexHalfEdge> edge) {
             if (edge.size() == 1 && params_.boundaries) add(vertex, edge[0].other, vermillion);
-            if (edge.size() == 2 && params_.creases && by_angle &&
-                angle_between(normal_of(edge[0].number), normal_of(edge[1].number)) > crease_angle)
+            if (edge.size() == 2 && params_.creases && by_angle && is_crease(joined, edge[0].number, edge[1].number))
                 add(vertex, edge[0].other, black);
         });
         if (params_.creases)
             for (const Edge& edge : mesh.sharp_edges) add(edge[0], edge[1], black);
+    }
+
+    /// Whether the triangles of two half-edges with the same ends meet at more than crease_angle. No triangle without
+    /// area does.
+    static bool is_crease(const TriangleMesh& mesh, u32 one, u32 other) {
+        const auto normal_of = [&](u32 half_edge) {
+            return area_vector(mesh.positions, mesh.triangles[half_edge / 3]);
+        };
+        const bool are_opposite = half_edges::start(mesh, one) != half_edges::start(mesh, other);
+        const Vec3 a = normal_of(one), b = are_opposite ? normal_of(other) : Vec3(-normal_of(other));
+        return a != Vec3::Zero() && b != Vec3::Zero() && angle_between(a, b) > crease_angle + angle_tie;
     }
 
     void find_intersections(const TriangleMesh& mesh) {
@@ -302,6 +351,7 @@ private:
 
     const RenderParams& params_;
     Context& context_;
+    std::optional<Limits> tolerance_, scale_;
     DrawnScene scene_;
 };
 

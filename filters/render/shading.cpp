@@ -3,9 +3,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -80,13 +82,14 @@ struct Pixel {
 class Shader {
 public:
     Shader(const View& view, const DrawnScene& scene, const RayCaster& caster, const SurfaceNormals* normals,
-           const RenderParams& params, Context& context)
+           const RenderParams& params, Context& context, const std::array<double, 2>& progress)
         : view_(view),
           scene_(scene),
           caster_(caster),
           normals_(normals),
           params_(params),
           context_(context),
+          progress_(progress),
           side_(params.style == RenderParams::Style::lines ? 3 : 2),
           key_((-0.5 * view.right() + 0.6 * view.up() + 0.6 * view.back()).normalized()) {}
 
@@ -112,6 +115,9 @@ private:
         for_each_chunk(context_.threads(), view_.part().height, 4, [&](std::size_t begin, std::size_t end) {
             context_.check_cancelled();
             for (std::size_t row = begin; row < end; ++row) action(static_cast<u32>(row));
+            constexpr double passes = 3;
+            const double done = static_cast<double>(rows_done_ += end - begin) / (passes * view_.part().height);
+            context_.progress(progress_[0] + (progress_[1] - progress_[0]) * done);
         });
     }
 
@@ -267,8 +273,7 @@ private:
             const Ray ray = ray_of(column, row, pixel.first);
             const Vec3 place = ray.origin + pixel.depth / -view_.back().dot(ray.direction) * ray.direction;
             const Vec3 normal = Vec3(pixel.normal[0], pixel.normal[1], pixel.normal[2]).normalized();
-            const Vec3 any = std::abs(normal.x()) < 0.5 ? Vec3::UnitX() : Vec3::UnitY();
-            const Vec3 one = any.cross(normal).normalized(), other = normal.cross(one);
+            const auto [one, other] = directions_across(normal);
             // A float's depth errs; a disc lies beside its neighbours, not on them.
             const double disc = scene_.disc_radius;
             const double offset = surface_offset * caster_.radius() + 1e-6 * pixel.depth + 2 * disc;
@@ -319,6 +324,8 @@ private:
     const SurfaceNormals* normals_;
     const RenderParams& params_;
     Context& context_;
+    const std::array<double, 2> progress_;
+    std::atomic<std::size_t> rows_done_ = 0;
     const u32 side_;
     const Vec3 key_;
     const OcclusionDirections directions_;
@@ -341,8 +348,9 @@ double DepthMap::visible(const View& view, std::int64_t x, std::int64_t y, doubl
 }
 
 DepthMap shade(Canvas& canvas, const View& view, const DrawnScene& scene, const RayCaster& caster,
-               const SurfaceNormals* normals, const RenderParams& params, Context& context) {
-    return Shader(view, scene, caster, normals, params, context).draw(canvas);
+               const SurfaceNormals* normals, const RenderParams& params, Context& context,
+               const std::array<double, 2>& progress) {
+    return Shader(view, scene, caster, normals, params, context, progress).draw(canvas);
 }
 
 }  // namespace scanmill

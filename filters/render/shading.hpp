@@ -17,9 +17,11 @@ struct DepthMap {
     double visible(const View& view, std::int64_t x, std::int64_t y, double depth) const;
 };
 
-/// Draws the triangles and discs of the scene. `normals` are those of scene.mesh, or null without triangles.
+/// Draws the triangles and discs of the scene. `normals` are those of scene.mesh, or null without triangles. Progress
+/// goes from the first to the second number of `progress`.
 /// Cost: see render(); parallel over rows of pixels.
 DepthMap shade(Canvas& canvas, const View& view, const DrawnScene& scene, const RayCaster& caster,
-               const SurfaceNormals* normals, const RenderParams& params, Context& context);
+               const SurfaceNormals* normals, const RenderParams& params, Context& context,
+               const std::array<double, 2>& progress);
 
 }  // namespace scanmill

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/surface_normals.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
 
@@ -32,19 +33,19 @@ SurfaceNormals::SurfaceNormals(const TriangleMesh& mesh, unsigned threads)
     area_vectors_.resize(mesh.triangles.size());
     for_each_chunk(threads, mesh.triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
-            const auto& [a, b, c] = mesh.triangles[t];
-            area_vectors_[t] = (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
+            area_vectors_[t] = area_vector(mesh.positions.span(), mesh.triangles[t]);
         }
     });
     if (corner_normals_ || vertex_normals_) return;
+    lowest_ = lowest_at_position(mesh.positions.span());
     begin_.assign(mesh.positions.size() + 1, 0);
     for (const Triangle& triangle : mesh.triangles)
-        for (const u32 vertex : triangle) ++begin_[vertex + 1];
+        for (const u32 vertex : triangle) ++begin_[lowest_[vertex] + 1];
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) begin_[v + 1] += begin_[v];
     around_.resize(3 * mesh.triangles.size());
     Array<u32> next(begin_.begin(), begin_.end() - 1);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        for (const u32 vertex : mesh.triangles[t]) around_[next[vertex]++] = static_cast<u32>(t);
+        for (const u32 vertex : mesh.triangles[t]) around_[next[lowest_[vertex]]++] = static_cast<u32>(t);
 }
 
 Vec3 SurfaceNormals::facet(u32 triangle) const { return unit(area_vectors_[triangle]); }
@@ -58,7 +59,8 @@ Vec3 SurfaceNormals::corner(u32 triangle, std::size_t corner, const Vec3& facet)
         for (u32 i = 0; i < 3; ++i) normal[i] = vertex_normals_->number(vertex, i);
     } else {
         normal.setZero();
-        for (u32 i = begin_[vertex]; i < begin_[vertex + 1]; ++i) {
+        const u32 lowest = lowest_[vertex];
+        for (u32 i = begin_[lowest]; i < begin_[lowest + 1]; ++i) {
             const Vec3& other = area_vectors_[around_[i]];
             const double along = other.dot(facet);
             if (along > 0 && along * along >= smooth_cosine * smooth_cosine * other.squaredNorm()) normal += other;

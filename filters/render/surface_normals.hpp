@@ -19,8 +19,8 @@ public:
     /// without area.
     ///
     /// The normals of the corners are interpolated: those of the face column `corner-normals`, else of the vertex
-    /// column `normal`, else the sums of the area vectors of the facets around the vertex that are within 40 degrees of
-    /// this facet.
+    /// column `normal`, else the sums of the area vectors of the facets around the vertex's position that are within 40
+    /// degrees of this facet.
     Vec3 at(u32 triangle, const std::array<double, 3>& weights) const;
     /// The facet's unit normal; zero without area.
     Vec3 facet(u32 triangle) const;
@@ -31,8 +31,9 @@ private:
     const TriangleMesh& mesh_;
     const Column *corner_normals_ = nullptr, *vertex_normals_ = nullptr;
     Array<Vec3> area_vectors_;
-    /// The triangles around every vertex; empty if the mesh has normals.
-    Array<u32> begin_, around_;
+    /// For every vertex the lowest one at its position, and the triangles around each of these; empty if the mesh has
+    /// normals.
+    Array<u32> lowest_, begin_, around_;
 };
 
 }  // namespace scanmill

@@ -47,6 +47,8 @@ public:
             colours[i] = channels >= 3 ? Colour{from[0], from[1], from[2]} : Colour{from[0], from[0], from[0]};
             translucent += channels % 2 == 0 && from[channels - 1] != 255 ? 1 : 0;
         }
+        if (png_get_valid(png_, info_, PNG_INFO_tRNS))
+            warn(options.on_warning, "alpha was left out: one colour is transparent");
         if (translucent > 0)
             warn(options.on_warning, "alpha was left out: {} not opaque",
                  count_text(translucent, "pixel is", "pixels are"));

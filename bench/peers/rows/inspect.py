@@ -21,6 +21,7 @@ def rows(inputs, large):
             "extremes, root mean square and the share in tolerance. Scanmill also chooses labels, counts points beyond "
             "borders and makes the map on the nominal. It uses doubles and the mesh's orientation; Open3D uses floats "
             "and counts crossings of a ray.",
+            filters=["inspect"],
             agree={"rms": 1e-4, "min": 1e-4, "max": 1e-4, "in_tolerance": 1e-4},
         )
     ]

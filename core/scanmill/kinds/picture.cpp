@@ -19,10 +19,13 @@ struct KindTraits<Picture> : NotGeometric<Picture>, NoJson<Picture> {
     }
     static void require_usable(const Picture& picture) {
         const std::size_t pixels = std::size_t(picture.width) * picture.height;
-        if (pixels == 0) throw Error("the picture is empty: {} x {} pixels", picture.width, picture.height);
+        if (pixels == 0)
+            throw Error("the picture is empty: {} x {} pixels", picture.width, picture.height)
+                .hint("this is a fault of the filter that made it");
         if (picture.pixels.size() != pixels)
             throw Error("the picture has {} pixels; expected {} x {} = {}", picture.pixels.size(), picture.width,
-                        picture.height, pixels);
+                        picture.height, pixels)
+                .hint("this is a fault of the filter that made it");
     }
 };
 

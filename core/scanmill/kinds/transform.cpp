@@ -134,7 +134,8 @@ std::vector<ScanPose> poses_from_json(const Json& json, const OnWarning& warn) {
         pose.transform.unit = document.unit;
         pose.transform.to = document.frame;
         if (each.rms && !(*each.rms >= 0))
-            throw Error("pose {}: 'rms' is {}; expected a length of at least 0", poses.size() + 1, *each.rms);
+            throw Error("pose {}: 'rms' is {}; expected a length of at least 0", poses.size() + 1, *each.rms)
+                .hint("leave it out if the motion was not found by a fit");
         pose.transform.rms = each.rms;
         poses.push_back(std::move(pose));
     }

@@ -198,7 +198,8 @@ std::string measures_text(const MeasureSpec& measures) {
 
 std::string draws_text(const DrawSpec& draws) {
     return fmt::format(
-        "Without `in`, `{}` takes the last geometric value before the step. The step also runs if this value misses a "
+        "Without `in`, `{}` takes the last geometric value before the step. The step also runs if one of its inputs "
+        "misses a "
         "condition of `expect`.",
         draws.value);
 }

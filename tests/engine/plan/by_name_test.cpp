@@ -17,7 +17,7 @@ using testing::IsEmpty;
 
 struct NoParams {};
 
-/// names: points, a mesh by name alone, a transform by name alone → numbers, the points by name alone.
+/// names: points, a mesh by name alone, features by name alone → numbers, the points by name alone.
 class NamedPorts : public test::Batches {
 protected:
     NamedPorts() {
@@ -28,7 +28,7 @@ protected:
                          .not_finite("Nothing is asked.")
                          .in<PointCloud>("points", "As its name says.")
                          .in<TriangleMesh>("nominal", "As its name says.", by_name)
-                         .in<TetMesh>("tets", "As its name says.", optional, by_name)
+                         .in<FeatureGraph>("lines", "As its name says.", optional, by_name)
                          .out<Metrics>("numbers", "As its name says.")
                          .out_like("moved", "points", "As its name says.", by_name)
                          .
@@ -38,10 +38,10 @@ protected:
     }
     std::vector<std::string> check_steps(const std::string& steps) {
         Diagnostics diagnostics("f/w");
-        plan_ =
-            make_plan(parse_workflow("scanmill: 1\ninputs: {scan: points, mesh: mesh, cells: tets}\nsteps:\n" + steps,
-                                     diagnostics),
-                      library_, {}, diagnostics);
+        plan_ = make_plan(
+            parse_workflow("scanmill: 1\ninputs: {scan: points, mesh: mesh, edges: features}\nsteps:\n" + steps,
+                           diagnostics),
+            library_, {}, diagnostics);
         std::vector<std::string> texts;
         for (const Diagnostic& diagnostic : diagnostics.sorted()) texts.push_back(text(diagnostic, "w"));
         return texts;
@@ -51,13 +51,14 @@ protected:
 };
 
 TEST_F(NamedPorts, RequiredInput_MustBeNamed) {
-    EXPECT_THAT(check_steps("  - names:\n"), ElementsAre(HasSubstr("'nominal' of names must be named in `in`")));
+    EXPECT_THAT(check_steps("  - names:\n"),
+                ElementsAre(HasSubstr("'nominal' of names takes mesh and must be named in `in`")));
 }
 
 TEST_F(NamedPorts, OptionalInput_TakesNoEarlierValueByItself) {
     EXPECT_THAT(check_steps("  - names:\n    in: {nominal: mesh}\n"), IsEmpty());
     EXPECT_EQ(plan_.steps[0].inputs.size(), 2u);
-    EXPECT_THAT(check_steps("  - names:\n    in: {nominal: mesh, tets: cells}\n"), IsEmpty());
+    EXPECT_THAT(check_steps("  - names:\n    in: {nominal: mesh, lines: edges}\n"), IsEmpty());
     EXPECT_EQ(plan_.steps[0].inputs.size(), 3u);
 }
 

@@ -82,6 +82,40 @@ TEST(RenderLines, Features_HaveTheColoursOfTheirTypes) {
     EXPECT_TRUE(is_white(pixel(picture, 100, 50)));
 }
 
+TEST(RenderLines, LineOnAPlateInPerspective_IsSeenAlongItsWholeLength) {
+    const TriangleMesh plate = centred_square(10);
+    FeatureGraph line;
+    line.positions = Array<Vec3>{{0, -4.9, 0}, {0, 4.9, 0}, {0, -40, 0}};
+    line.vertices = Array<u32>{0, 1, 2, 1};
+    line.left_normals = line.right_normals = Array<Vec3>(4, Vec3::UnitZ());
+    line.polylines = {{FeatureType::crease, false, 0, 2}};
+    RenderParams params;
+    params.size = {200, 200};
+    params.eye = {{Length(0), Length(-8), Length(3)}};
+    params.look_at = {{Length(0), Length(0), Length(0)}};
+    const auto dark_rows = [&](const Picture& picture) {
+        std::size_t rows = 0;
+        for (u32 y = 0; y < 200; ++y) rows += brightness(pixel(picture, 100, y)) < 150;
+        return rows;
+    };
+    const Picture without = picture_of(&plate, params), with = picture_of(&plate, params, 2, &line);
+    std::size_t plate_rows = 0;
+    for (u32 y = 0; y < 200; ++y) plate_rows += !is_white(pixel(without, 100, y));
+    EXPECT_EQ(dark_rows(without), 0u);
+    EXPECT_GE(dark_rows(with) + 8, plate_rows);
+    line.polylines = {{FeatureType::crease, false, 2, 4}};  // begins behind the eye
+    EXPECT_GE(dark_rows(picture_of(&plate, params, 2, &line)) + 3, plate_rows);
+}
+
+TEST(RenderLines, WhatLiesFarBeforeTheTruth_IsNotCutOff) {
+    const TriangleMesh nominal = centred_square(1), clamp = centred_square(0.5, 40);
+    const TriangleMesh scan = both(nominal, clamp);
+    const Picture picture = picture_of(&scan, from_above(), 2, {}, &nominal),
+                  plain = picture_of(&nominal, from_above());
+    EXPECT_FALSE(picture == plain);
+    EXPECT_LT(brightness(pixel(picture, 54, 100)), brightness(pixel(plain, 54, 100)) + 1);
+}
+
 TEST(RenderLines, Probes_ShowTouchesAndApproaches) {
     const TriangleMesh plate = centred_square(2);
     ProbePlan plan;
@@ -200,6 +234,23 @@ TEST(RenderLegend, SignedLengths_HaveNumbersAndWords) {
     for (const LegendTick& tick : legend.ticks) texts.push_back(tick.text);
     EXPECT_THAT(texts, ElementsAre("-0.05", "-0.025", "0", "+0.05", "+0.1"));
     EXPECT_DOUBLE_EQ(legend.ticks[2].place, 1.0 / 3);
+}
+
+TEST(RenderLegend, Tolerance_IsMarkedOnWhicheverSideItIs) {
+    const TriangleMesh square = square_with("deviation", {-0.1, 0.3, 0.1, 0}, 1);
+    RenderParams params;
+    params.colour = "deviation";
+    const auto texts = [&](double low, double high) {
+        params.tolerance = {{Length(low), Length(high)}};
+        Context context;
+        std::vector<std::string> found;
+        for (const LegendTick& tick : legend_of(*make_scene({&square, {}, {}}, params, context).column).ticks)
+            found.push_back(tick.text);
+        return found;
+    };
+    EXPECT_THAT(texts(-0.1, 0.1), ElementsAre("-0.2", "-0.1", "0", "+0.1", "+0.2"));
+    EXPECT_THAT(texts(0.1, 0.3), ElementsAre("-0.6", "0", "+0.1", "+0.3", "+0.6"));
+    EXPECT_THAT(texts(-0.2, -0.1), ElementsAre("-0.4", "-0.2", "-0.1", "0", "+0.4"));
 }
 
 TEST(RenderLegend, UnsignedNumbers_HaveNoWords) {

@@ -139,10 +139,17 @@ TEST(RayCaster, RaysThroughEdgesAndVerticesOfAClosedMesh_NeverPass) {
     const Scene scene;
     const RayCaster caster(scene.mesh.positions.span(), scene.mesh.triangles.span(), {}, 2);
     const Vec3 middle(1000.1, -2000.3, 500.7);
-    for (const Ray& ray : scene.rays) {
-        if (std::abs((ray.origin - middle).norm() - 1.11) < 0.2) continue;  // inside, or on the surface
-        const Vec3 to_middle = (middle - ray.origin).normalized();
-        EXPECT_TRUE(caster.first({ray.origin, to_middle}).found());
+    Random random(11);
+    for (int i = 0; i < 20'000; ++i) {
+        const Triangle& triangle = scene.mesh.triangles[random.index(scene.mesh.triangles.size())];
+        const Vec3 &a = scene.mesh.positions[triangle[0]], &b = scene.mesh.positions[triangle[1]];
+        const double share = i % 3 == 0 ? 0 : random.uniform();  // a vertex, or a point of an edge
+        const Vec3 target = a + share * (b - a);
+        // From outside, within 60 degrees of the direction away from the middle.
+        const Vec3 away = (target - middle).normalized();
+        const Vec3 aside = Vec3(random.normal(), random.normal(), random.normal()).cross(away).normalized();
+        const Vec3 origin = target + 2 * (away + random.uniform(0, 1.7) * aside);
+        EXPECT_TRUE(caster.first({origin, (target - origin).normalized()}).found());
     }
 }
 

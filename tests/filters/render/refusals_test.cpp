@@ -44,12 +44,12 @@ TEST(RenderRefuses, CoordinatesThatAreNotFinite) {
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     positions[2].y() = nan;
     mesh.positions = std::move(positions);
-    EXPECT_THAT(error_of([&] { picture_of(&mesh); }).sentence(), HasSubstr("1"));
+    EXPECT_THAT(refusal_of(&mesh).sentence(), HasSubstr("1 of 4 vertices has a NaN or an infinity"));
     PointCloud cloud;
     cloud.positions = Array<Vec3>{{infinity, 0, 0}};
-    EXPECT_THAT(error_of([&] { picture_of(&cloud); }).sentence(), HasSubstr("1"));
+    EXPECT_THAT(refusal_of(&cloud).sentence(), HasSubstr("1 of 1 points has a NaN or an infinity"));
     const TriangleMesh good = centred_square(1);
-    EXPECT_THAT(error_of([&] { picture_of(&good, {}, 1, &cloud); }).sentence(), HasSubstr("1"));
+    EXPECT_THAT(refusal_of(&good, {}, &cloud).sentence(), HasSubstr("1 of 1 points has a NaN or an infinity"));
     ProbePlan plan;
     plan.touches.emplace_back().position = {nan, 0, 0};
     EXPECT_THAT(refusal_of(&good, {}, &plan).sentence(), HasSubstr("touch 0"));
@@ -91,6 +91,39 @@ TEST(RenderRefuses, ScaleUpsideDown) {
     EXPECT_THAT(refusal_of(&square, params).sentence(), HasSubstr("from 1 to -1"));
 }
 
+TEST(RenderRefuses, ToleranceUpsideDown_AlsoWithoutAColumn) {
+    const TriangleMesh square = centred_square(1);
+    RenderParams params;
+    params.tolerance = {{Length(0.2), Length(-0.1)}};
+    EXPECT_THAT(refusal_of(&square, params).sentence(), HasSubstr("from 0.2 to -0.1"));
+}
+
+TEST(RenderRefuses, BandsWithAColumn) {
+    const TriangleMesh square = square_with("d", {0, 1, 0, 1});
+    RenderParams params;
+    params.colour = "d";
+    params.style = RenderParams::Style::lines;
+    EXPECT_THAT(refusal_of(&square, params).sentence(), HasSubstr("not the colours of 'd'"));
+}
+
+TEST(RenderRefuses, SizeWithOneNumber) {
+    const TriangleMesh square = centred_square(1);
+    RenderParams params;
+    params.size = {100};
+    EXPECT_THAT(refusal_of(&square, params).sentence(), HasSubstr("has 1 numbers"));
+}
+
+TEST(RenderRefuses, ValuesOfDifferentFrames) {
+    TriangleMesh square = centred_square(1);
+    square.frame.name = "scanner";
+    PointCloud cloud;
+    cloud.frame.name = "part";
+    cloud.positions = Array<Vec3>{{0, 0, 0}};
+    EXPECT_THAT(error_of([&] { picture_of(&square, {}, 1, &cloud); }).sentence(),
+                AllOf(HasSubstr("scanner"), HasSubstr("part")));
+    EXPECT_THAT(error_of([&] { picture_of(&square, {}, 1, {}, &cloud); }).sentence(), HasSubstr("'truth'"));
+}
+
 TEST(RenderRefuses, CamerasThatDoNotFit) {
     const TriangleMesh square = centred_square(1);
     RenderParams params;
@@ -115,6 +148,27 @@ TEST(RenderWarns, PictureWithoutRoomForTheLegend) {
     const Picture picture = render({&square, {}, {}}, params, context);
     EXPECT_EQ(picture.pixels.size(), 256u);
     EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("legend is left out")));
+}
+
+TEST(RenderWarns, MarksOfMeshesOnPoints) {
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>{{0, 0, 0}, {1, 0, 0}};
+    RenderParams params = from_above();
+    params.edges = params.creases = true;
+    Context context;
+    render({&cloud, {}, {}}, params, context);
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("`edges` and `creases` do not apply")));
+}
+
+TEST(RenderWarns, ColumnLabelOfClasses) {
+    PointCloud cloud;
+    Array<Vec3> positions;
+    for (int i = 0; i < 1500; ++i) positions.push_back({double(i % 40), double(i / 40), 0});
+    cloud.positions = std::move(positions);
+    cloud.columns.add(Column("label", 1, Buffer<u32>(Array<u32>(1500, 3))));
+    Context context;
+    render({&cloud, {}, {}}, from_above(), context);
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("1500 values above 0")));
 }
 
 TEST(RenderWarns, LabelsWithoutRoom) {

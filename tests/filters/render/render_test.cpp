@@ -160,6 +160,13 @@ TEST(Render, AnyNumberOfThreads_GivesTheSameBytes) {
         EXPECT_TRUE(one == picture_of(&surface, params, 2));
         EXPECT_TRUE(one == picture_of(&surface, params, 8));
     }
+    PointCloud points;
+    points.positions = surface.positions;
+    RenderParams params;
+    params.size = {160, 120};
+    params.camera = {CameraView::automatic, CameraView::top};
+    const Picture one = picture_of(&points, params, 1, &points, &surface);
+    EXPECT_TRUE(one == picture_of(&points, params, 8, &points, &surface));
 }
 
 TEST(Render, ShiftedFrame_GivesTheSamePicture) {

@@ -86,6 +86,23 @@ TEST(ColourScale, Tolerance_IsLighterInside) {
     EXPECT_EQ(colour_of(banded, 1), colour_of(plain, 1));
 }
 
+TEST(ColourScale, ToleranceOnOneSideOf0_LeavesNoValueOutsideLight) {
+    const auto lightness = [](const Colour& colour) { return colour[0] + colour[1] + colour[2]; };
+    for (const auto& [low, high] : {std::pair(0.0, 0.1), {0.1, 0.3}, {-0.3, -0.1}, {-0.1, 0.0}}) {
+        const ColourScale scale = scale_of_tolerance(low, high);
+        int darkest_in = 3 * 255, lightest_out = 0;
+        for (int i = -1000; i <= 1000; ++i) {
+            const double value = i * 0.001;
+            const int light = lightness(colour_of(scale, value));
+            if (value >= low && value <= high)
+                darkest_in = std::min(darkest_in, light);
+            else
+                lightest_out = std::max(lightest_out, light);
+        }
+        EXPECT_GE(darkest_in, lightest_out - 12) << low << " to " << high;  // blue and red differ a little
+    }
+}
+
 TEST(ColourScale, ToleranceBeyondTheRange_HasNoEffect) {
     for (double value = -1; value <= 1; value += 0.1)
         EXPECT_EQ(colour_of({-1, 1, -2, 1}, value), colour_of({-1, 1}, value));

@@ -51,9 +51,12 @@ Colour colour_of(const ColourScale& scale, double value) {
     assert(scale.low <= scale.high);
     if (std::isnan(value)) return no_data;
     const double neutral = std::clamp(0.0, scale.low, scale.high);
-    if (value < neutral)
-        return colour_in(below, share_of(neutral - value, neutral - scale.tolerance_low, neutral - scale.low));
-    return colour_in(above, share_of(value - neutral, scale.tolerance_high - neutral, scale.high - neutral));
+    const bool is_below = value < neutral;
+    double share = is_below ? share_of(neutral - value, neutral - scale.tolerance_low, neutral - scale.low)
+                            : share_of(value - neutral, scale.tolerance_high - neutral, scale.high - neutral);
+    const bool is_out = scale.has_tolerance() && (value < scale.tolerance_low || value > scale.tolerance_high);
+    if (is_out) share = std::max(share, band_end);
+    return colour_in(is_below ? below : above, share);
 }
 
 }  // namespace scanmill

@@ -13,9 +13,12 @@ namespace scanmill {
 struct ColourScale {
     /// The values with the darkest colours. Values outside have these colours, too.
     double low = 0, high = 1;
-    /// A band of values around 0 that keeps to the lightest fifth of each half; without effect on a half where it is 0
-    /// or not inside the range. So values out of tolerance are clearly coloured.
+    /// The values in tolerance, if the two are not both 0. Values in tolerance have the lightest fifth of a half; no
+    /// other value has a lighter colour than the end of this fifth. So values out of tolerance are clearly coloured.
+    /// A limit beyond the range has no effect.
     double tolerance_low = 0, tolerance_high = 0;
+
+    bool has_tolerance() const { return tolerance_low != 0 || tolerance_high != 0; }
 };
 
 /// The scale for deviations with this tolerance: [2 low, 2 high]. A tolerance without a negative end begins at -2 high,
@@ -32,7 +35,8 @@ inline constexpr Colour no_data = {160, 160, 160};
 /// darkest red. If low ≥ 0, only the upper half is used, with `low` neutral. If high ≤ 0, only the lower half is used,
 /// with `high` neutral.
 /// Pre:  finite bounds, low ≤ high. If both are equal, this value is neutral.
-/// Post: continuous in the value. Bytes do not depend on the processor.
+/// Post: continuous in the value, except at a limit of a tolerance that does not contain 0. Bytes do not depend on the
+///       processor.
 Colour colour_of(const ColourScale& scale, double value);
 
 }  // namespace scanmill
