@@ -12,9 +12,9 @@ cd "$folder"
 
 run() { "$program" run "$@" --no-cache --quiet >/dev/null; }
 
-# draw FILE KIND PARAMETERS PICTURE [MESH]: MESH sets the camera.
+# draw FILE KIND PARAMETERS PICTURE [POINTS]: the points set the camera.
 draw() {
-    printf 'scanmill: 1\nname: draw\ninputs: {scene: %s, truth: mesh}\nsteps:\n  - render: {%s}\n    in: {scene: scene, truth: truth}\n' \
+    printf 'scanmill: 1\nname: draw\ninputs: {scene: %s, truth: points}\nsteps:\n  - render: {%s}\n    in: {scene: scene, truth: truth}\n' \
         "$2" "$3" >draw.yaml
     printf 'outputs: {picture.png: render}\n' >>draw.yaml
     run draw.yaml "$1" --in "truth=${5:-$1}" -o drawn
@@ -25,8 +25,8 @@ draw() {
 # The first page: a scan and what becomes of it.
 run raw-scans "$data/points_3/kitten.xyz" -o kitten
 kitten=kitten/raw-scans.ply
-draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png $kitten
-draw $kitten mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png
+draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png
+draw $kitten mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png "$data/points_3/kitten.xyz"
 
 # The page of render.
 draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filters/render/picture.png
