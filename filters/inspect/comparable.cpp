@@ -23,7 +23,9 @@ constexpr double doubtful_share = 0.5;
 /// Largest share of the tolerance's width that an instrument's or a nominal's own error should have.
 constexpr double largest_chord_share = 0.1;
 
-std::string range_text(const BoundingBox& box) {
+/// In world coordinates.
+std::string range_text(BoundingBox box, const Vec3& origin) {
+    box = {box.low + origin, box.high + origin};
     return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", box.low.x(), box.low.y(), box.low.z(),
                        box.high.x(), box.high.y(), box.high.z());
 }
@@ -47,13 +49,26 @@ std::string unit_suspicion(const Extents& extents) {
     return "";
 }
 
+/// The number of triangles whose corners another triangle has in the opposite order.
+std::size_t reversed_twins(const TriangleMesh& surface) {
+    Array<Triangle> all;
+    for (Triangle corners : surface.triangles) {
+        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        all.push_back(corners);
+    }
+    std::ranges::sort(all);
+    std::size_t twins = 0;
+    for (const auto& [a, b, c] : all) twins += b < c && std::ranges::binary_search(all, Triangle{a, c, b});
+    return twins;
+}
+
 std::string amounts_text(const Inspection& inspected) {
     std::vector<std::string> amounts;
     const auto add = [&](std::size_t count, const std::string& what) {
         if (count > 0) amounts.push_back(fmt::format("{} {}", count, what));
     };
-    add(inspected.too_far, fmt::format("farther than {} {} from the nominal", number_text(inspected.max_distance),
-                                       symbol(inspected.unit)));
+    add(inspected.too_far,
+        fmt::format("farther than {:.4g} {} from the nominal", inspected.max_distance, symbol(inspected.unit)));
     add(inspected.beyond_border, "beyond its border");
     add(inspected.undecided, "where its triangles do not decide the sign");
     add(inspected.cut, "cut by sigma");
@@ -80,16 +95,16 @@ void require_sound(const InspectParams& params) {
             .hint("give the largest distance at which a point can belong to the part, or auto");
 }
 
-void require_tolerance(const InspectParams& params, const Tolerance& tolerance) {
+void require_tolerance(const InspectParams& params, const Tolerance& tolerance, LengthUnit unit) {
     if (!(std::isfinite(tolerance.low) && std::isfinite(tolerance.high)))
         throw Error("the tolerance is {} to {}; both must be finite", params.tolerance[0].text(),
                     params.tolerance[1].text())
             .hint("give the lowest and the highest allowed deviation: tolerance: [-0.05 mm, 0.1 mm]");
     if (tolerance.low > tolerance.high)
-        throw Error("the tolerance begins at {} and ends at {}, which is lower", params.tolerance[0].text(),
-                    params.tolerance[1].text())
-            .hint(fmt::format("the low end comes first: tolerance: [{}, {}]", params.tolerance[1].text(),
-                              params.tolerance[0].text()));
+        throw Error("the tolerance begins at {0} {2} and ends at {1} {2}, which is lower", number_text(tolerance.low),
+                    number_text(tolerance.high), symbol(unit))
+            .hint(fmt::format("the low end comes first: tolerance: [{1} {2}, {0} {2}]", number_text(tolerance.low),
+                              number_text(tolerance.high), symbol(unit)));
 }
 
 void require_surface(const TriangleMesh& nominal) {
@@ -128,7 +143,8 @@ void refuse_without_points(const Inspection& inspected, const Extents& extents, 
     const std::string points =
         inspected.points == 1 ? "the only point cannot" : fmt::format("none of the {} points can", inspected.points);
     throw Error("{} be inspected: {}; the scan extends from {}, the nominal from {} ({}){}", points,
-                amounts_text(inspected), range_text(extents.scan), range_text(extents.nominal), symbol(extents.unit),
+                amounts_text(inspected), range_text(extents.scan, extents.origin),
+                range_text(extents.nominal, extents.origin), symbol(extents.unit),
                 inspected.too_far > 0 ? suspicion : "")
         .hint(hint);
 }
@@ -144,6 +160,11 @@ void doubt_nominal(const Nominal& nominal, Context& context) {
             fmt::format("the triangles of the nominal face different sides at {}, so the signs change there without "
                         "cause; orient them with repair",
                         count_text(edges, "edge", "edges")));
+    if (const std::size_t pairs = reversed_twins(surface); pairs > 0)
+        context.doubt(fmt::format(
+            "{} in both orientations in the nominal, so the signs there depend on the order of the rows; keep the "
+            "triangles of one side",
+            count_text(pairs, "triangle is", "triangles are")));
 }
 
 void doubt_findings(const Inspection& inspected, const Extents& extents, Context& context) {
@@ -151,9 +172,9 @@ void doubt_findings(const Inspection& inspected, const Extents& extents, Context
         return static_cast<double>(count) / static_cast<double>(inspected.points);
     };
     if (share(inspected.too_far) > doubtful_share)
-        context.doubt(fmt::format("{} of {} points are farther than {} {} from the nominal and not counted{}",
-                                  inspected.too_far, inspected.points, number_text(inspected.max_distance),
-                                  symbol(inspected.unit), unit_suspicion(extents)));
+        context.doubt(fmt::format("{} of {} points are farther than {:.4g} {} from the nominal and not counted{}",
+                                  inspected.too_far, inspected.points, inspected.max_distance, symbol(inspected.unit),
+                                  unit_suspicion(extents)));
     if (share(inspected.undecided) > doubtful_share)
         context.doubt(fmt::format("{} of {} points are nearest to edges whose triangles do not decide the sign",
                                   inspected.undecided, inspected.points));

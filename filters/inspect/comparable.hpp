@@ -11,7 +11,7 @@ namespace scanmill::inspecting {
 void require_sound(const InspectParams& params);
 
 /// Requires finite ends in the right order.
-void require_tolerance(const InspectParams& params, const Tolerance& tolerance);
+void require_tolerance(const InspectParams& params, const Tolerance& tolerance, LengthUnit unit);
 
 /// Requires consistent, finite triangles, one with an area.
 void require_surface(const TriangleMesh& nominal);
@@ -19,9 +19,10 @@ void require_surface(const TriangleMesh& nominal);
 /// The rms of a transform in this unit, which is its own if one of both is unknown.
 double in_unit_of(const RigidTransform& transform, LengthUnit unit);
 
-/// The boxes of scan and nominal, in the scan's frame.
+/// The boxes of scan and nominal, relative to the scan's origin.
 struct Extents {
     BoundingBox scan, nominal;
+    Vec3 origin;
     LengthUnit unit;
 };
 

@@ -209,16 +209,12 @@ Column colours_of(std::span<const double> deviations, const ColourScale& scale) 
     return Column("colour", 3, Buffer<u8>(std::move(colours)));
 }
 
-Column lengths(const char* name, Array<double> values) {
-    return Column(name, 1, Buffer<double>(std::move(values))).with_length_exponent(1);
-}
-
 /// The nominal with the columns that describe its faces still.
 void carry_columns(TriangleMesh& map, const TriangleMesh& nominal, std::span<const u32> parents, Context& context) {
     std::vector<std::string> dropped;
     for (const Column& column : nominal.face_columns)
-        // Normals of corners belong to the given corners.
-        if (column.name().starts_with("corner-"))
+        // Normals of corners belong to the given corners; colours of faces would hide those of the map.
+        if (column.name().starts_with("corner-") || column.name() == "colour")
             dropped.push_back("'" + column.name() + "'");
         else
             map.face_columns.add(column.gather(parents));
@@ -250,7 +246,9 @@ TriangleMesh map_on(const TriangleMesh& given, const Vec3& shift, const Nominal&
     TriangleMesh mesh = map.mesh;
     carry_columns(mesh, given, map.parents, context);
     const Column colours = colours_of(means, result.scale);
-    mesh.vertex_columns.add(lengths("deviation", std::move(means)));
+    // Floats suffice for means, and all formats hold them.
+    Array<float> rounded(means.begin(), means.end());
+    mesh.vertex_columns.add(Column("deviation", 1, Buffer<float>(std::move(rounded))).with_length_exponent(1));
     mesh.vertex_columns.add(colours);
     if (parts) {
         Array<u32> of_row(given.triangles.size(), 0);
@@ -273,7 +271,7 @@ Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Rig
     Inspection result;
     result.unit = scan.frame.unit;
     result.tolerance = {resolved(params.tolerance[0]), resolved(params.tolerance[1])};
-    require_tolerance(params, result.tolerance);
+    require_tolerance(params, result.tolerance, result.unit);
     result.chord_error = resolved(params.chord_error);
     result.diagonal = surface_box(nominal).diagonal();
     result.aligned = transform != nullptr;
@@ -313,7 +311,7 @@ Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Rig
         counted = counted_rows(distances, scan.rows);
     }
     count_findings(result, distances, scan);
-    const Extents extents{bounding_box(scan.positions), surface_box(surface.surface()), result.unit};
+    const Extents extents{bounding_box(scan.positions), surface_box(surface.surface()), scan.frame.origin, result.unit};
     if (counted.empty()) refuse_without_points(result, extents, params);
     doubt_findings(result, extents, context);
     context.progress(0.7);
@@ -347,16 +345,21 @@ Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Rig
     return result;
 }
 
+/// A column `colour` under the name `scan-colour`, so that the heat map takes its place.
+void keep_colours(ColumnTable& columns, Context& context) {
+    const Column* own = columns.find("colour");
+    if (!own) return;
+    const Column kept = own->renamed("scan-colour");
+    ColumnTable others;
+    for (const Column& column : columns)
+        if (column.name() != "colour") others.add(column);
+    columns = std::move(others);
+    add_column(columns, kept, context);
+}
+
 /// The scan's columns with those of the inspection.
 void add_columns(ColumnTable& columns, const Inspection& inspected, Context& context) {
-    if (const Column* own = columns.find("colour")) {
-        const Column kept = own->renamed("scan-colour");
-        ColumnTable others;
-        for (const Column& column : columns)
-            if (column.name() != "colour") others.add(column);
-        columns = std::move(others);
-        add_column(columns, kept, context);
-    }
+    keep_colours(columns, context);
     const Buffer<double> deviations(inspected.deviations);
     add_column(columns, Column("deviation", 1, deviations).with_length_exponent(1), context);
     add_column(columns, Column("label", 1, Buffer<u32>(inspected.label_numbers)), context);
@@ -420,6 +423,7 @@ PointCloud deviation_of(const PointCloud& scan, const Inspection& inspected, Con
 TriangleMesh deviation_of(const TriangleMesh& scan, const Inspection& inspected, Context& context) {
     TriangleMesh result = scan;
     add_columns(result.vertex_columns, inspected, context);
+    keep_colours(result.face_columns, context);
     return result;
 }
 

@@ -18,10 +18,10 @@ void declare_numbers(Filter& filter) {
                 numbered)
         .metric("counted", Unit::count,
                 "Points in the statistics: all without those undecided, beyond borders, too far and cut.", numbered)
-        .metric("min", Unit::length, "Least deviation.", numbered)
+        .metric("min", Unit::length, "Least deviation.", numbered, headline)
         .metric("max", Unit::length, "Largest deviation.", numbered, headline)
         .metric("mean", Unit::length, "Mean deviation.", numbered)
-        .metric("rms", Unit::length, "Root of the mean squared deviation.", numbered, headline, smaller_is_better)
+        .metric("rms", Unit::length, "Root of the mean squared deviation.", numbered, smaller_is_better)
         .metric("standard-deviation", Unit::length,
                 "Root of the mean squared difference from the mean; the divisor is the number of points.", numbered,
                 smaller_is_better)

@@ -31,8 +31,8 @@ struct Legend {
 /// both signs have the words *outside* and *inside*.
 Legend legend_of(const DrawnColumn& column);
 
-/// "-0.05": the value with as many decimals as a scale of this width needs, and with its sign if `is_signed`.
-std::string scale_text(double value, double width, bool is_signed);
+/// "-0.05": the value with four digits, and with its sign if `is_signed`.
+std::string scale_text(double value, bool is_signed);
 
 /// Columns of pixels that the legend needs beside a picture with this text size.
 u32 width_of(const Legend& legend, Font& font, double size);

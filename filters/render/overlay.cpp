@@ -24,12 +24,14 @@ struct Box {
 
 class Overlay {
 public:
-    Overlay(Canvas& canvas, Font& font, const View& view, const DepthMap& depths, double tolerance, double size)
+    Overlay(Canvas& canvas, Font& font, const View& view, const DepthMap& depths, double tolerance,
+            double label_tolerance, double size)
         : canvas_(canvas),
           font_(font),
           view_(view),
           depths_(depths),
           tolerance_(tolerance),
+          label_tolerance_(label_tolerance),
           size_(size) {}
 
     void draw(const DrawnLine& line) {
@@ -49,7 +51,8 @@ public:
         for_each_pixel({place.x - radius, place.y - radius, place.x + radius, place.y + radius},
                        [&](std::int64_t x, std::int64_t y) {
                            const double distance = length(x + 0.5 - place.x, y + 0.5 - place.y);
-                           lay(x, y, place.depth, dot.colour, radius - distance + 0.5);
+                           const double slack = dot.label.empty() ? 0 : label_tolerance_ - tolerance_;
+                           lay(x, y, place.depth - slack, dot.colour, radius - distance + 0.5);
                        });
     }
 
@@ -59,7 +62,7 @@ public:
         if (dot.label.empty() || place.depth < view_.least_depth()) return true;
         const auto x = static_cast<std::int64_t>(std::floor(place.x)),
                    y = static_cast<std::int64_t>(std::floor(place.y));
-        if (depths_.visible(view_, x, y, place.depth - tolerance_) == 0) return true;
+        if (depths_.visible(view_, x, y, place.depth - label_tolerance_) == 0) return true;
         const double width = font_.width(dot.label, size_), near = 0.8 * size_;
         for (const double reach : {near, 2.5 * near, 4 * near, 6 * near})
             for (const auto& [right, up] : {std::pair(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
@@ -153,15 +156,15 @@ private:
     Font& font_;
     const View& view_;
     const DepthMap& depths_;
-    const double tolerance_, size_;
+    const double tolerance_, label_tolerance_, size_;
     std::vector<Box> taken_;
 };
 
 }  // namespace
 
 std::size_t draw_overlay(Canvas& canvas, Font& font, const View& view, const DrawnScene& scene, const DepthMap& depths,
-                         double tolerance, double size) {
-    Overlay overlay(canvas, font, view, depths, tolerance, size);
+                         double tolerance, double label_tolerance, double size) {
+    Overlay overlay(canvas, font, view, depths, tolerance, label_tolerance, size);
     for (const DrawnLine& line : scene.lines) overlay.draw(line);
     for (const DrawnDot& dot : scene.dots) overlay.draw(dot);
     std::size_t left_out = 0;

@@ -36,7 +36,7 @@ SCANMILL_FILTER() {
         .in<TriangleMesh, PointCloud>(
             "truth", "Sets the camera instead of the scene, so that pictures of different results match.", optional)
         .out<Picture>("picture", "The picture; PNG files hold its caption as description.")
-        .param("size", &P::size, "Columns and rows of the picture in pixels.", size(2), at_least(16), at_most(8192))
+        .param("size", &P::size, "Columns and rows of the picture in pixels.", size(2), at_least(16), at_most(4096))
         .choices("camera", &P::camera,
                  {{"auto", CameraView::automatic,
                    "From above, in the direction that shows the largest silhouette; surfaces seen from behind count a "
@@ -79,7 +79,8 @@ SCANMILL_FILTER() {
         .param("edges", &P::edges, "Whether the edges of the triangles are drawn.")
         .param("boundaries", &P::boundaries, "Whether boundary edges of a mesh are drawn, in orange.")
         .param("intersections", &P::intersections,
-               "Whether triangles that intersect others are drawn in magenta; takes about 1 us per triangle.")
+               "Whether triangles that intersect others are drawn in magenta; takes about 1 us per triangle of a good "
+               "mesh.")
         .param("creases", &P::creases,
                "Whether the mesh's sharp edges are drawn; without any, edges of more than 40 degrees.")
         .draws("scene")

@@ -32,11 +32,17 @@ RayHit hit_triangle(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c)
     const double u = ray.direction.dot(oc.cross(ob)), v = ray.direction.dot(oa.cross(oc)),
                  w = ray.direction.dot(ob.cross(oa));
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return {};
-    const double sum = u + v + w;
+    // Sums in an order of the corners that does not depend on the triangle: a triangle that is there twice has the same
+    // distance twice, also turned over.
+    std::array<std::pair<const Vec3*, double>, 3> terms{{{&oa, u}, {&ob, v}, {&oc, w}}};
+    std::ranges::sort(terms, [](const auto& one, const auto& other) { return is_lower(*one.first, *other.first); });
+    const double sum = terms[0].second + terms[1].second + terms[2].second;
     if (sum == 0) return {};
     RayHit hit;
     hit.weights = {u / sum, v / sum, w / sum};
-    hit.distance = ray.direction.dot(hit.weights[0] * oa + hit.weights[1] * ob + hit.weights[2] * oc);
+    Vec3 place = Vec3::Zero();
+    for (const auto& [corner, volume] : terms) place += volume / sum * *corner;
+    hit.distance = ray.direction.dot(place);
     if (!(hit.distance >= ray.from)) return {};
     hit.item = 0;
     return hit;

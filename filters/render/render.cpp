@@ -20,6 +20,8 @@ constexpr double text_share = 14.0 / 600;
 constexpr double least_text = 10;
 /// A line on the surface may lie behind it by this share of the scene's radius.
 constexpr double line_tolerance = 0.005;
+/// As much for labels, which belong to points of a scan beside the surface.
+constexpr double label_tolerance = 0.03;
 
 /// A surface that rays can hit.
 struct Surface {
@@ -48,6 +50,15 @@ const Frame* frame_of(const Drawable& drawable) {
 void require_frame_of_scene(const Drawable& scene, const Drawable& other, std::string_view name) {
     const Frame *frame = frame_of(scene), *its = frame_of(other);
     if (frame && its) require_same_frame(*its, fmt::format("{} is", name), *frame, "the scene");
+}
+
+/// Whether all pixels of the part are white.
+bool is_empty(const Canvas& canvas, const Rectangle& part) {
+    const Buffer<Colour> pixels = canvas.pixels();
+    for (u32 y = part.y; y < part.y + part.height; ++y)
+        for (u32 x = part.x; x < part.x + part.width; ++x)
+            if (pixels[std::size_t(y) * canvas.width() + x] != Colour{255, 255, 255}) return false;
+    return true;
 }
 
 std::string caption_of(const DrawnScene& scene, const std::optional<Legend>& legend, const std::vector<View>& views) {
@@ -114,12 +125,15 @@ Picture render(const RenderInputs& inputs, const RenderParams& params, Context& 
             depths = shade(canvas, views[i], scene, *surface.caster, surface.normals ? &*surface.normals : nullptr,
                            params, context, {begin + (end - begin) * 0.1, end});
         const double radius = surface.caster ? surface.caster->radius() : 0;
-        hidden_labels += draw_overlay(canvas, font, views[i], scene, depths, line_tolerance * radius, size);
+        hidden_labels += draw_overlay(canvas, font, views[i], scene, depths, line_tolerance * radius,
+                                      label_tolerance * radius, size);
         if (views.size() > 1)
             font.draw(canvas, views[i].name(), views[i].part().x + size, views[i].part().y + 1.5 * size, size,
                       title_ink);
         context.progress(end);
     }
+    if (is_empty(canvas, part))
+        context.doubt("the picture shows nothing: the scene is out of view, seen edge-on, or without area");
     if (hidden_labels > 0)
         context.warn(fmt::format("{} of the labels found no free place in the picture", hidden_labels));
     return {canvas.width(), canvas.height(), canvas.pixels(), caption_of(scene, legend, views)};

@@ -22,7 +22,7 @@ enum class CameraView { automatic, front, back, left, right, top, bottom };
 enum class UpAxis { automatic, x, y, z };
 
 struct RenderParams {
-    /// Columns and rows of the picture, each from 16 to 8192.
+    /// Columns and rows of the picture, each from 16 to 4096.
     std::vector<u32> size{800, 600};
     /// One view each; several views share the picture.
     std::vector<CameraView> camera{CameraView::automatic};

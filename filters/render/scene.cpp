@@ -50,7 +50,7 @@ std::string counted(std::size_t count, std::string_view singular, std::string_vi
 ColourScale automatic_scale(std::span<const double> values) {
     Array<double> finite;
     for (const double value : values)
-        if (std::isfinite(value)) finite.push_back(value);
+        if (!std::isnan(value)) finite.push_back(value);
     if (finite.empty()) return {0, 0};
     const std::size_t left_out = finite.size() / 100;
     const auto low = finite.begin() + static_cast<std::ptrdiff_t>(left_out),
@@ -64,6 +64,14 @@ ColourScale automatic_scale(std::span<const double> values) {
         scale.low = -scale.high;
     }
     return scale;
+}
+
+/// The scale for a tolerance of width 0: it ends at the largest absolute value.
+ColourScale scale_without_tolerance(std::span<const double> values) {
+    double widest = 0;
+    for (const double value : values)
+        if (std::abs(value) > widest) widest = std::abs(value);
+    return {-widest, widest};
 }
 
 class SceneMaker {
@@ -119,18 +127,22 @@ private:
         const double spacing = point_spacing(cloud->positions.span());
         const double diagonal = bounding_box(cloud->positions.span()).diagonal();
         constexpr double of_diagonal = 0.005;  // for one point, and for points that coincide
+        constexpr double largest_of_diagonal = 0.05;  // for a few points
         Array<double> radii(cloud->size(), diagonal > 0 ? of_diagonal * diagonal : 1);
-        if (spacing > 0) radii = local_radii(cloud->positions.span(), spacing);
+        if (spacing > 0) radii = local_radii(cloud->positions.span(), spacing, largest_of_diagonal * diagonal);
         const Column* normals = cloud->columns.find("normal");
         const bool has_normals = normals && normals->components() == 3;
-        scene_.discs.resize(cloud->size());
+        // Of points at one position, the first is seen.
+        const Array<u32> lowest = lowest_at_position(cloud->positions.span());
         for (std::size_t row = 0; row < cloud->size(); ++row) {
+            if (lowest[row] != row) continue;
             Vec3 normal = Vec3::Zero();
             if (has_normals) {
                 normal = {normals->number(row, 0), normals->number(row, 1), normals->number(row, 2)};
                 normal = normal.allFinite() && normal.norm() > 0 ? normal.normalized().eval() : Vec3::Zero().eval();
             }
-            scene_.discs[row] = {cloud->positions[row], normal, radii[row]};
+            scene_.discs.push_back({cloud->positions[row], normal, radii[row]});
+            scene_.disc_rows.push_back(static_cast<u32>(row));
         }
         const auto median = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
         std::nth_element(radii.begin(), median, radii.end());
@@ -144,14 +156,14 @@ private:
     }
 
     /// By row, for points that do not all coincide.
-    Array<double> local_radii(std::span<const Vec3> positions, double spacing) const {
+    Array<double> local_radii(std::span<const Vec3> positions, double spacing, double largest) const {
         const PointTree tree(positions, context_.threads());
         Array<double> by_position(tree.positions().size());
         tree.for_each_nearest(disc_neighbour, context_.threads(), [&](const NeighbourBatch& batch) {
             for (std::size_t i = 0; i < batch.indices.size(); ++i) {
                 const double reach = batch.each == 0 ? 0 : std::sqrt(batch.of(i).back().squared);
                 by_position[batch.indices[i]] =
-                    std::clamp(disc_share * reach, least_disc * spacing, largest_disc * spacing);
+                    std::min(largest, std::clamp(disc_share * reach, least_disc * spacing, largest_disc * spacing));
             }
         });
         Array<double> radii(positions.size());
@@ -218,7 +230,7 @@ private:
             for (const Column& column : *table) names.push_back(column.name());
         throw Error("the scene has no column '{}'; {}{}", *params_.colour,
                     names.empty() ? "it has none" : "it has " + enumerated(names), did_you_mean(*params_.colour, names))
-            .hint("`colour` takes the name of a column");
+            .hint("name the value that has the column, as `in: {scene: inspect.deviation}`");
     }
 
     void colour_by(const Column& column, bool by_face, const Frame& frame) {
@@ -239,16 +251,20 @@ private:
                         column.name(), column.is_list() ? "a list" : fmt::format("{} numbers", column.components()))
                 .hint("choose another column with `colour`");
         drawn.values.resize(rows);
-        for (std::size_t row = 0; row < rows; ++row) drawn.values[row] = column.number(row);
+        for (std::size_t row = 0; row < rows; ++row) {
+            const double value = column.number(row);
+            drawn.values[row] = std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+        }
         const auto is_nan = [](double value) { return std::isnan(value); };
         const std::size_t gaps = static_cast<std::size_t>(std::ranges::count_if(drawn.values, is_nan));
         drawn.has_gaps = gaps > 0;
         if (gaps == rows)
             context_.warn(fmt::format("the column '{}' has no value: the whole scene is grey", column.name()));
         if (column.length_exponent() == 1) drawn.unit = symbol(frame.unit);
-        const bool has_tolerance = tolerance_ && (tolerance_->low != 0 || tolerance_->high != 0);
-        drawn.scale =
-            has_tolerance ? scale_of_tolerance(tolerance_->low, tolerance_->high) : automatic_scale(drawn.values);
+        drawn.scale = !tolerance_ ? automatic_scale(drawn.values)
+                      : tolerance_->low != 0 || tolerance_->high != 0
+                          ? scale_of_tolerance(tolerance_->low, tolerance_->high)
+                          : scale_without_tolerance(drawn.values);
         if (scale_) {
             drawn.scale.low = scale_->low;
             drawn.scale.high = scale_->high;
@@ -364,7 +380,10 @@ Array<Vec3> DrawnScene::extent() const {
         for (const u32 vertex : triangle) is_used[vertex] = true;
     for (std::size_t vertex = 0; vertex < is_used.size(); ++vertex)
         if (is_used[vertex]) positions.push_back(mesh.positions[vertex]);
-    for (const Disc& disc : discs) positions.push_back(disc.centre);
+    for (const Disc& disc : discs) {
+        positions.push_back(disc.centre - Vec3::Constant(disc.radius / std::sqrt(3.0)));
+        positions.push_back(disc.centre + Vec3::Constant(disc.radius / std::sqrt(3.0)));
+    }
     for (const DrawnLine& line : lines) {
         positions.push_back(line.from);
         positions.push_back(line.to);

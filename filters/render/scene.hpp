@@ -40,6 +40,7 @@ struct DrawnColumn {
 struct DrawnScene {
     TriangleMesh mesh;  ///< without triangles for scenes of points or lines
     Array<Disc> discs;
+    Array<u32> disc_rows;  ///< the point of each disc
     double disc_radius = 0;  ///< the median of the discs' radii
     std::optional<DrawnColumn> column;
     /// One per triangle, nonzero if it intersects another; empty unless wanted.

@@ -175,7 +175,7 @@ private:
         if (!scene_.column) return light_of(is_front ? clay : clay_from_behind);
         const DrawnColumn& column = *scene_.column;
         const bool is_triangle = hit.item < caster_.triangles();
-        const u32 row = is_triangle ? hit.item : static_cast<u32>(hit.item - caster_.triangles());
+        const u32 row = is_triangle ? hit.item : scene_.disc_rows[hit.item - caster_.triangles()];
         if (!is_triangle || column.by_face)
             return light_of(column.colours.empty() ? colour_of(column.scale, column.values[row]) : column.colours[row]);
         const Triangle& corners = scene_.mesh.triangles[row];

@@ -11,6 +11,9 @@ namespace scanmill {
 
 namespace {
 
+/// The facets around a vertex of more than this many are long and thin, as in the fan of a flat end. They keep their
+/// normals.
+constexpr u32 most_around = 64;
 constexpr double smooth_cosine = 0.766044443118978;  // of 40 degrees
 
 const Column* numbers_of(const ColumnTable& columns, std::string_view name, u32 components) {
@@ -60,6 +63,7 @@ Vec3 SurfaceNormals::corner(u32 triangle, std::size_t corner, const Vec3& facet)
     } else {
         normal.setZero();
         const u32 lowest = lowest_[vertex];
+        if (begin_[lowest + 1] - begin_[lowest] > most_around) return facet;
         for (u32 i = begin_[lowest]; i < begin_[lowest + 1]; ++i) {
             const Vec3& other = area_vectors_[around_[i]];
             const double along = other.dot(facet);

@@ -20,7 +20,7 @@ public:
     ///
     /// The normals of the corners are interpolated: those of the face column `corner-normals`, else of the vertex
     /// column `normal`, else the sums of the area vectors of the facets around the vertex's position that are within 40
-    /// degrees of this facet.
+    /// degrees of this facet. Beside a vertex of more than 64 facets, the facet's own normal is used.
     Vec3 at(u32 triangle, const std::array<double, 3>& weights) const;
     /// The facet's unit normal; zero without area.
     Vec3 facet(u32 triangle) const;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The signs of deviations beside faces, edges, vertices and borders.
+#include <gmock/gmock.h>
+
 #include "filters/inspect/cases.hpp"
 #include "scanmill/formats/files.hpp"
+#include "support/doubts.hpp"
 #include "support/numbers.hpp"
 #include "support/real_data.hpp"
 
@@ -164,6 +167,15 @@ TEST(InspectSign, EdgeOfThreeTriangles_IsDecidedWhereAllAgree) {
     const Inspection at_star = inspected(cloud({{1e-3, 1e-3, 1}, {0.5, 0.01, 1}}), star);
     EXPECT_DOUBLE_EQ(at_star.deviations[0], 1e-3);
     EXPECT_DOUBLE_EQ(at_star.deviations[1], 0.01);
+}
+
+TEST(InspectSign, NominalInBothOrientations_IsDoubtful) {
+    const TriangleMesh twice = both(cube(), inside_out(cube()));
+    Context context;
+    InspectParams params;
+    params.tolerance = {Length(-1), Length(1)};
+    inspect(cloud({{0.5, 0.5, 1.1}, {0.2, 0.3, 1.2}}), twice, nullptr, params, context);
+    EXPECT_THAT(doubts_of(context), testing::Contains(testing::HasSubstr("12 triangles are in both orientations")));
 }
 
 TEST(InspectSign, InsideOutNominal_ReversesTheSigns) {

@@ -44,6 +44,18 @@ TEST(RenderPoints, OnePoint_IsDrawn) {
     EXPECT_FALSE(is_white(pixel(picture_of(&cloud, from_above()), 100, 100)));
 }
 
+TEST(RenderPoints, PointsAtOnePosition_ShowTheFirst) {
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>(5000, Vec3(1, 2, 3));
+    Array<double> values(5000, 1.0);
+    values[0] = -1;
+    cloud.columns.add(Column("d", 1, Buffer<double>(std::move(values))));
+    RenderParams params = from_above();
+    params.colour = "d";
+    params.scale = {{Length(-1), Length(1)}};
+    EXPECT_LE(difference(pixel(picture_of(&cloud, params), 100, 100), colour_of({-1, 1}, -1)), 8);
+}
+
 TEST(RenderPoints, PlaneOfPoints_HasTheLightOfAPlane) {
     // Normals come from the depths around a pixel: a plane of points looks like the plane.
     const PointCloud cloud = grid(40);
@@ -209,6 +221,17 @@ TEST(RenderLabels, LabelledPoints_ShowTheValueOfTheColouredColumn) {
     EXPECT_EQ(make_scene({&square, {}, {}}, params, context).dots[1].label, "2");
 }
 
+TEST(RenderLabels, PointInADentBelowTheSurface_IsLabelled) {
+    const TriangleMesh square = centred_square(2);
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>{{0, 0, -0.02}};
+    cloud.columns.add(Column("label", 1, Buffer<u32>(Array<u32>{1})));
+    const Picture with = picture_of(&square, from_above(), 2, &cloud), without = picture_of(&square, from_above());
+    EXPECT_LT(brightness(pixel(with, 100, 100)), 60);
+    EXPECT_GT(count_pixels(with, [](const Colour& c) { return brightness(c) < 100; }),
+              count_pixels(without, [](const Colour& c) { return brightness(c) < 100; }) + 20);
+}
+
 TEST(RenderLabels, PointsOver_OnlyLabelledOnesIfThereAreLabels) {
     const TriangleMesh square = centred_square(2);
     PointCloud cloud;
@@ -289,12 +312,25 @@ TEST(RenderLegend, Bar_HasTheColoursOfTheScaleAndTheTextsInk) {
     for (const double value : {-0.99, -0.5, -0.25, 0.25, 0.5, 0.99}) EXPECT_TRUE(shows(value)) << value;
 }
 
-TEST(RenderLegend, ScaleTexts_HaveTheDecimalsThatTheWidthNeeds) {
-    EXPECT_EQ(scale_text(0.0125, 0.05, true), "+0.0125");
-    EXPECT_EQ(scale_text(-0.05, 0.1, true), "-0.05");
-    EXPECT_EQ(scale_text(1234.5, 5000, false), "1234.5");
-    EXPECT_EQ(scale_text(-1e-12, 1, true), "0");
-    EXPECT_EQ(scale_text(3, 3, false), "3");
+TEST(RenderLegend, ScaleTexts_HaveFourDigits) {
+    EXPECT_EQ(scale_text(0.0125, true), "+0.0125");
+    EXPECT_EQ(scale_text(-0.05, true), "-0.05");
+    EXPECT_EQ(scale_text(-0.025, true), "-0.025");
+    EXPECT_EQ(scale_text(1234.5, false), "1234");
+    EXPECT_EQ(scale_text(-1e-14, true), "-1e-14");
+    EXPECT_EQ(scale_text(-0.0, true), "0");
+    EXPECT_EQ(scale_text(3, false), "3");
+}
+
+TEST(RenderScale, OneSign_KeepsToOneHalf) {
+    TriangleMesh square = square_with("d", {1, 2, 3, 2});
+    RenderParams params = from_above();
+    params.colour = "d";
+    params.scale = {{Length(1.5), Length(2.5)}};
+    const Picture picture = picture_of(&square, params);
+    const ColourScale scale{1.5, 2.5};
+    EXPECT_LE(difference(pixel(picture, 12, 187), colour_of(scale, 1.5)), 2) << "1 has the colour of the lower end";
+    EXPECT_LE(difference(pixel(picture, 187, 12), colour_of(scale, 2.5)), 2);
 }
 
 TEST(RenderScale, Automatic_LeavesOutAHundredthAndIsSymmetrical) {

@@ -44,6 +44,19 @@ TEST(RayCaster, RayThroughEdgeOrCorner_HitsLowerRowOfEquallyNearTriangles) {
     EXPECT_EQ(caster.first({{1.5, 0.5, 5}, {0, 0, -1}}).item, 1u) << "a triangle that is there twice";
 }
 
+TEST(RayCaster, TriangleTwiceInEitherOrientation_LowerRowIsHit) {
+    Random random(2);
+    for (int i = 0; i < 200; ++i) {
+        const auto number = [&] { return random.uniform(-1, 1); };
+        const Array<Vec3> positions{
+            {number(), number(), number()}, {number(), number(), number()}, {number(), number(), number()}};
+        const Array<Triangle> triangles{{0, 2, 1}, {0, 1, 2}, {1, 2, 0}, {2, 1, 0}};
+        const RayCaster caster(positions, triangles, {}, 1);
+        const Vec3 middle = (positions[0] + positions[1] + positions[2]) / 3;
+        EXPECT_EQ(caster.first({Vec3(0, 0, 9), (middle - Vec3(0, 0, 9)).normalized()}).item, 0u);
+    }
+}
+
 TEST(RayCaster, TriangleWithoutArea_IsNeverHit) {
     const Array<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, -1}, {1, 0, -1}, {0, 1, -1}};
     const Array<Triangle> triangles{{0, 1, 2}, {0, 1, 1}, {3, 4, 5}};

@@ -150,6 +150,17 @@ TEST(RenderWarns, PictureWithoutRoomForTheLegend) {
     EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("legend is left out")));
 }
 
+TEST(RenderDoubts, PictureOfNothing) {
+    const TriangleMesh square = centred_square(1);
+    RenderParams params;
+    params.size = {100, 100};
+    params.eye = {{Length(0), Length(0), Length(5)}};
+    params.look_at = {{Length(0), Length(0), Length(9)}};
+    Context context;
+    render({&square, {}, {}}, params, context);
+    EXPECT_EQ(context.doubts().size(), 1u);
+}
+
 TEST(RenderWarns, MarksOfMeshesOnPoints) {
     PointCloud cloud;
     cloud.positions = Array<Vec3>{{0, 0, 0}, {1, 0, 0}};

@@ -50,11 +50,12 @@ ColourScale scale_of_tolerance(double low, double high) {
 Colour colour_of(const ColourScale& scale, double value) {
     assert(scale.low <= scale.high);
     if (std::isnan(value)) return no_data;
+    const bool is_out = scale.has_tolerance() && (value < scale.tolerance_low || value > scale.tolerance_high);
     const double neutral = std::clamp(0.0, scale.low, scale.high);
+    value = std::clamp(value, scale.low, scale.high);
     const bool is_below = value < neutral;
     double share = is_below ? share_of(neutral - value, neutral - scale.tolerance_low, neutral - scale.low)
                             : share_of(value - neutral, scale.tolerance_high - neutral, scale.high - neutral);
-    const bool is_out = scale.has_tolerance() && (value < scale.tolerance_low || value > scale.tolerance_high);
     if (is_out) share = std::max(share, band_end);
     return colour_in(is_below ? below : above, share);
 }
