@@ -6,24 +6,11 @@
 #include <cmath>
 
 #include "scanmill/base/statistics.hpp"
+#include "scanmill/geometry/distance/compensated_sum.hpp"
 
 namespace scanmill::inspecting {
 
 namespace {
-
-/// A sum that keeps the digits that additions lose (Neumaier 1974), in the order of its terms.
-class CompensatedSum {
-public:
-    void add(double term) {
-        const double next = sum_ + term;
-        lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
-        sum_ = next;
-    }
-    double value() const { return sum_ + lost_; }
-
-private:
-    double sum_ = 0, lost_ = 0;
-};
 
 /// Candidates that are sorted at first; each further block is twice as large.
 constexpr std::size_t first_block = 1 << 12;

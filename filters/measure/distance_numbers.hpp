@@ -7,6 +7,7 @@
 #include <span>
 
 #include "scanmill/data/array.hpp"
+#include "scanmill/geometry/distance/compensated_sum.hpp"
 
 namespace scanmill {
 
@@ -41,21 +42,6 @@ double share_within(std::span<const double> distances, double threshold);
 /// The smallest value that at least `share` of all values do not exceed. Pre: sorted values, at least one;
 /// 0 ≤ share ≤ 1.
 double quantile(std::span<const double> sorted, double share);
-
-/// A sum that keeps the digits that additions lose (Neumaier 1974), so its error does not grow with the number of
-/// terms.
-class CompensatedSum {
-public:
-    void add(double term) {
-        const double next = sum_ + term;
-        lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
-        sum_ = next;
-    }
-    double value() const { return sum_ + lost_; }
-
-private:
-    double sum_ = 0, lost_ = 0;
-};
 
 }  // namespace measuring
 
