@@ -43,7 +43,7 @@ the mesh."""
 
 
 def surfaces_of(program, points, model, folder, limit):
-    """Properties of the surfaces by variant; without distances where there is no mesh."""
+    """Properties of the surfaces by variant; a variant without a mesh has no distances."""
     report = scanmill.run(program, QUALITY / "surfaces.yaml", [points], folder, limit)
     found = {}
     for cell in report["cells"]:

@@ -46,7 +46,7 @@ constexpr double deviation_by_median = 1.4826;
 constexpr double least_cut = 1e-6;
 /// The cut is halved when a motion was smaller than this share of it: the residuals then change no more by much.
 constexpr double settled_share = 0.1;
-constexpr double tolerance_share = 1e-4;  ///< of the spacing
+constexpr double tolerance_share = 1e-4;  ///< as a share of the spacing
 /// Eigenvalues of H below this do not determine a motion. With noise of half a spacing, planes, spheres, cylinders and
 /// bodies of revolution have 0 to 0.0004; parts that do not slide have 0.0022 and more.
 constexpr double least_slide = 0.002;

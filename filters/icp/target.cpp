@@ -25,8 +25,8 @@ constexpr double rounding = 1e-12;
 /// Points within this share of the diagonal of their foot are on the surface: the direction from the foot is then
 /// partly rounding, and the normal of the triangle takes its place. Both have the same residual except at edges.
 constexpr double on_surface = 1e-8;
-/// Number of neighbours of a plane. They reach as far as 4 spacings, which keeps the noise of the normals small enough
-/// that spheres and cylinders are recognised as undetermined.
+/// Number of neighbours that determine a plane. They reach as far as 4 spacings. Normals then have so little noise that
+/// spheres and cylinders are recognised as undetermined.
 constexpr std::size_t neighbours = 50;
 /// A plane is used as far beside its point as this neighbour is away, about 2 spacings. The nearest point is at most
 /// one spacing beside in a sampled area.

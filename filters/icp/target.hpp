@@ -52,8 +52,8 @@ private:
     using BoundaryBits = unsigned char;
     bool is_on_boundary(u32 kept, const std::array<Vec3, 3>& corners, const Vec3& point) const;
 
-    std::unique_ptr<TriangleTree> tree_;  ///< of the triangles with an area
-    std::vector<BoundaryBits> boundary_;  ///< of these triangles
+    std::unique_ptr<TriangleTree> tree_;  ///< contains the triangles with an area
+    std::vector<BoundaryBits> boundary_;  ///< by triangle of the tree
 };
 
 class PointsTarget : public Target {

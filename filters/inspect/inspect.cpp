@@ -39,7 +39,7 @@ constexpr u32 first_part_number = 2;
 struct Scan {
     const Frame& frame;
     std::span<const Vec3> positions;
-    Array<u32> rows;  ///< of the points to inspect, ascending
+    Array<u32> rows;  ///< the points to inspect, ascending
     std::function<double()> spacing, diagonal;
     /// An upper bound of `spacing` that is found faster, from points along a space-filling curve.
     std::function<double(std::span<const u32> order)> rough_spacing;
@@ -48,7 +48,7 @@ struct Scan {
 /// Rows of the scan with their nearest triangles and findings.
 struct Distances {
     Array<double> deviations;
-    Array<u32> triangles;  ///< of Nominal::surface(); NearestTriangle::none if too far
+    Array<u32> triangles;  ///< rows of Nominal::surface(); NearestTriangle::none if too far
     Array<u32> slots;
     Array<Finding> findings;
 };

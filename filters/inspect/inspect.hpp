@@ -85,7 +85,7 @@ struct Inspection {
     double max_distance = 0, chord_error = 0;
     ColourScale scale;
     LengthUnit unit = LengthUnit::unknown;
-    double diagonal = 0;  ///< of the nominal's bounding box
+    double diagonal = 0;  ///< the diagonal of the nominal's bounding box
     /// Whether a transform was given, and what it contains, in `unit`.
     bool aligned = false;
     std::optional<double> alignment_rms;

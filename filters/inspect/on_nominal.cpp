@@ -27,7 +27,7 @@ constexpr u32 none = ~u32(0);
 /// One round of splitting: the midpoints of all long edges.
 struct Midpoints {
     Array<u32> of_half_edge;  ///< the vertex at the middle, or none
-    Array<Vec3> positions;  ///< of the new vertices
+    Array<Vec3> positions;  ///< where the new vertices are
     Array<Edge> sharp;
 };
 

@@ -28,7 +28,7 @@ double affordable_edge(const TriangleMesh& mesh, double wanted);
 /// The deviations that are averaged, in any order.
 struct Footprints {
     std::span<const Vec3> feet;  ///< nearest points of the nominal
-    std::span<const u32> triangles;  ///< of Nominal::surface()
+    std::span<const u32> triangles;  ///< rows of Nominal::surface()
     std::span<const double> deviations;
 };
 

@@ -48,7 +48,7 @@ class RayCaster {
 public:
     /// The positions, triangles and discs must outlive the object. `instruction_set` is one of Embree's names; it does
     /// not change the hits.
-    /// Pre: finite coordinates. Throws Error without an item. Cost: O(n log n) time, about 150 bytes per item.
+    /// Pre: finite coordinates. Throws Error without an item. Cost: O(n log n) time, about 100 bytes per item.
     RayCaster(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::span<const Disc> discs,
               unsigned threads, const char* instruction_set = "sse2");
     ~RayCaster();

@@ -132,7 +132,7 @@ private:
         if (spacing > 0) radii = local_radii(cloud->positions.span(), spacing, largest_of_diagonal * diagonal);
         const Column* normals = cloud->columns.find("normal");
         const bool has_normals = normals && normals->components() == 3;
-        // Of points at one position, the first is seen.
+        // Only the first of several points at one position is seen.
         const Array<u32> lowest = lowest_at_position(cloud->positions.span());
         for (std::size_t row = 0; row < cloud->size(); ++row) {
             if (lowest[row] != row) continue;

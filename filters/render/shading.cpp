@@ -72,8 +72,8 @@ private:
 /// What a pixel shows of the surface.
 struct Pixel {
     std::array<float, 3> light{};  ///< sum over the samples that hit
-    std::array<float, 3> normal{};  ///< of the first sample that hits, towards the camera; zero if not known yet
-    float depth = 0;  ///< of the first sample that hits
+    std::array<float, 3> normal{};  ///< at the first sample that hits, towards the camera; zero if not known yet
+    float depth = 0;  ///< at the first sample that hits
     float open = 1;  ///< share of the directions that are not occluded
     u8 hits = 0, first = 0;
     bool is_value = false;

@@ -3,8 +3,8 @@
 /// PNG, the image files of browsers and papers: pictures.
 ///
 /// Writing: 8-bit RGB in the sRGB colour space, not interlaced. The caption is the text `Description` (`tEXt` if it is
-/// ASCII, else `iTXt`), without control characters other than line breaks; `Software` is scanmill. There is no time, so
-/// equal values give equal bytes.
+/// ASCII, else `iTXt`), without control characters other than line breaks; `Software` is scanmill. The time is not
+/// written, so equal values give equal bytes.
 ///
 /// Reading: 8-bit grey and RGB, with or without alpha, interlaced or not. Grey becomes RGB. Alpha is left out, with a
 /// warning that counts the pixels that are not opaque. Colours are kept as they are stored; profiles and gamma are not

@@ -96,7 +96,7 @@ def distances(request):
 
 
 def inspect(request):
-    """Signed distances and their statistics; there is no map."""
+    """Signed distances and their statistics, without a map on the nominal."""
 
     def work():
         scene = open3d.t.geometry.RaycastingScene(nthreads=request["threads"])

@@ -5,11 +5,10 @@
 ///     {"scanmill": 1, "unit": "m", "frame": "bunny",
 ///      "poses": [{"scan": "bun000.ply", "rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]}
 ///
-/// A pose with rotation q = [qx, qy, qz, qw] and translation t maps a point p to R(q) p + t. `unit`, `frame` (the name
-/// of the frame that all poses lead to), `scan` (the frame that the pose starts from) and a pose's `rms` (the residual
-/// of the fit that found it) are optional. Instead of
-/// rotation and translation, a pose may have `"matrix"`: four rows of four numbers that map (p, 1). Coordinates are
-/// world coordinates.
+/// A pose with rotation q = [qx, qy, qz, qw] and translation t maps a point p to R(q) p + t. Four members are optional:
+/// `unit`, `frame` (the name of the frame that all poses lead to), `scan` (the frame that the pose starts from), and
+/// `rms` in a pose (what the fit that found the pose left). Instead of rotation and translation, a pose may have
+/// `"matrix"`: four rows of four numbers that map (p, 1). Coordinates are world coordinates.
 ///
 /// The JSON form of a transform is such a document with one pose, written as a matrix, which keeps every bit.
 

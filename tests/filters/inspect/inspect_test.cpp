@@ -451,7 +451,7 @@ TEST(InspectMap, ThinWall_DoesNotMixItsSides) {
     for (std::size_t vertex = 0; vertex < found.on_nominal.positions.size(); ++vertex) {
         const Vec3& p = found.on_nominal.positions[vertex];
         if (p.x() < 0.5 || p.x() > 9.5 || p.y() < 0.5 || p.y() > 9.5) continue;
-        EXPECT_NEAR(deviation.number(vertex), p.z() == 0 ? -0.003 : 0.005, 1e-9);
+        EXPECT_EQ(deviation.number(vertex), p.z() == 0 ? -0.003f : 0.005f) << "exact to a float";
     }
 }
 

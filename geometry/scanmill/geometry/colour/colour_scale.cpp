@@ -31,8 +31,8 @@ Colour colour_in(const Half& half, double share) {
     return colour;
 }
 
-/// Share of a half for a value at `distance` from its neutral end. `band` and `length`: distances of the tolerance and
-/// of the dark end.
+/// Share of a half for a value at `distance` from its neutral end. The tolerance ends at the distance `band`, the half
+/// at `length`.
 double share_of(double distance, double band, double length) {
     if (!(distance > 0)) return 0;
     if (distance >= length) return 1;
