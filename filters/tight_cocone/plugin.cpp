@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
 #include "cocone/parameters.hpp"
-#include "tight_cocone/tight_cocone.hpp"
+#include "tight_cocone/parameters.hpp"
 
 using namespace scanmill;
 
@@ -21,20 +21,8 @@ SCANMILL_FILTER() {
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, labelled inside or outside.");
     cocones::declare_parameters(declaration);
-    return declaration
-        .choice("noise", &P::noise,
-                {{"none", P::Noise::none, "All points may be on the surface."},
-                 {"big-balls", P::Noise::big_balls,
-                  "Only the points on the outer side of a noisy sample, at large empty balls, are used. The result is "
-                  "smoother, and lies outside of the surface by 0.4 to 1 standard deviations of the noise."}},
-                "Treatment of noise.")
-        .param("noise-neighbours", &P::noise_neighbours,
-               "With big-balls: a ball is compared with the distance to the nearest neighbour of this number; the "
-               "point itself is not counted.",
-               at_least(1), at_most(1000))
-        .param("noise-factor", &P::noise_factor,
-               "With big-balls: a ball is large if its radius is more than this times that distance.", above(0))
-        .metric("good", Unit::count, "Points where cocone's surface is one closed fan.", larger_is_better)
+    tight_cocones::declare_noise(declaration);
+    return declaration.metric("good", Unit::count, "Points where cocone's surface is one closed fan.", larger_is_better)
         .metric("poor", Unit::count, "All other points.", smaller_is_better)
         .metric("boundary-points", Unit::count, "Points where the sampling ends or is too sparse.")
         .metric("unused-points", Unit::count, "Points that are not on the surface.", headline, smaller_is_better)

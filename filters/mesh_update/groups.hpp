@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The groups into which the overlap facets divide the model, and the angle condition that chooses those to replace.
+///
+/// The boundary of a cloud lies on the model, so on one side of it the model continues the cloud, and on the other side
+/// it lies under or above the cloud. The angle at a boundary edge is the interior dihedral angle between the cloud's
+/// triangle and the triangle from the edge to the nearest vertex of a group: near 180° if the group continues the cloud,
+/// near 0 if the cloud replaces the group. As printed, equation 4 gives the opposite for a triangle that is folded back;
+/// the definition here agrees with figures 9 and 11.
+///
+/// Source: Woo, Dey 2005, section 3.4, equations 4 and 5, and the angle condition.
+
+#include <string>
+#include <vector>
+
+#include "mesh_update/overlap.hpp"
+
+namespace scanmill::updating {
+
+/// Components of the facets that are not overlap facets, connected through edges.
+struct Groups {
+    static constexpr std::int32_t overlap = -1;
+    /// By facet: its group, or `overlap`. Group 0 contains the lowest vertex of all groups, group 1 the lowest of the
+    /// others, and so on.
+    Array<std::int32_t> of_facet;
+    std::size_t count = 0;
+    std::vector<u32> component;  ///< by group, the lowest group in the same component of the model
+};
+
+/// Pre: one flag per facet. Cost: linear.
+Groups segmentation(const Model& model, std::span<const u8> is_overlap, Context& context);
+
+/// The interior dihedral angle at the edge from `start` to `end`, in radians: between the half-planes through `apex` and
+/// through `vertex`. `on_model` is the point of the model nearest to the middle of the edge: if the edge lies above or
+/// below the model, the direction to the vertex is still that along the model.
+double dihedral_angle(const Vec3& start, const Vec3& end, const Vec3& apex, const Vec3& on_model, const Vec3& vertex);
+
+struct GroupAngle {
+    u32 group;
+    double mean;  ///< in radians
+    std::size_t edges;  ///< boundary edges at which the group has a vertex
+};
+
+struct CloudAngles {
+    std::vector<GroupAngle> groups;  ///< those at the cloud's loops, ascending
+    /// A loop with one group only: no closed barrier, or one that does not divide the model.
+    std::optional<std::size_t> undivided_loop;
+};
+
+/// At every boundary edge, each group has at most one angle: that of its vertex on the overlap facets of this edge that
+/// is nearest to the edge's middle. Ties: the lowest vertex. Cost: linear in the overlap facets.
+CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSurface& cloud,
+                        std::span<const LoopOverlap> loops, Context& context);
+
+struct Choice {
+    std::vector<u32> replaced;  ///< groups, ascending
+    std::string ambiguity;  ///< why the angles do not decide; empty if they do
+};
+
+/// The groups that one cloud replaces. Of two groups, the one with the smaller mean angle; they must differ by more than
+/// `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°.
+Choice chosen_groups(const CloudAngles& angles, double gap);
+
+}  // namespace scanmill::updating

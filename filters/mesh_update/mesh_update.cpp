@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_update/mesh_update.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "mesh_update/replacement.hpp"
+#include "mesh_update/resample.hpp"
+#include "mesh_update/updated_mesh.hpp"
+#include "mesh_update/whole_rebuild.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/statistics.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/spacing.hpp"
+#include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
+
+namespace scanmill {
+
+using namespace updating;
+
+namespace {
+
+/// Clouds whose loops come this near, in spacings, count as one.
+constexpr double joining_distance = 2;
+/// Largest share of a loop's points without an overlap facet.
+constexpr double largest_hanging = 0.2;
+/// Largest median distance of a loop's points from their overlap facets, in spacings of the cloud.
+constexpr double largest_offset = 0.5;
+
+/// Clouds that are updated as one: usually a single cloud.
+struct CloudGroup {
+    std::vector<u32> numbers;  ///< of its clouds
+    Array<u32> rows;  ///< of its points, among the points of all clouds
+    Buffer<Vec3> positions;
+    CloudSurface surface;
+    std::vector<LoopOverlap> loops;  ///< of the loops of the surface that are used
+    std::vector<u32> overlap;  ///< facets, ascending
+    CloudAngles angles;
+};
+
+void require_parameters(const MeshUpdateParams& params) {
+    const auto require = [](bool is_right, const char* name, const auto& value, const char* range) {
+        if (!is_right)
+            throw Error("{} must be {}; it is {}", name, range, value).hint("the defaults suit most scans");
+    };
+    require(params.max_distance.value() > 0, "max-distance", params.max_distance.value(), "above 0");
+    require(params.trim >= 0 && std::isfinite(params.trim), "trim", params.trim, "0 or more");
+    require(params.density > 0 && std::isfinite(params.density), "density", params.density, "above 0");
+    const double gap = params.angle_gap.in_degrees();
+    require(gap >= 0 && gap <= 90, "angle-gap", gap, "from 0 to 90 degrees");
+}
+
+/// The name of the metric of item `number`, counted from 1.
+std::string numbered(std::string_view name, std::size_t number) {
+    return number == 1 ? std::string(name) : fmt::format("{}@{}", name, number);
+}
+
+/// Seconds since the last call.
+class StopWatch {
+public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+class Update {
+public:
+    Update(const TriangleMesh& given, std::span<const std::shared_ptr<const PointCloud>> clouds,
+           const MeshUpdateParams& params, Context& context)
+        : given_(given),
+          clouds_(clouds),
+          params_(params),
+          context_(context) {}
+
+    MeshUpdateResult run() {
+        require_parameters(params_);
+        require_inputs();
+        reconstruct_clouds();
+        context_.progress(0.2);
+        context_.metric("boundary-seconds", watch_.lap(), Unit::seconds);
+        double least = groups_[0].surface.spacing;
+        for (const CloudGroup& group : groups_) least = std::min(least, group.surface.spacing);
+        Resampled resampled = updating::resampled(given_, params_.density * least, {}, context_);
+        result_.resampled = resampled.added;
+        const Model model(resampled.mesh, context_);
+        context_.progress(0.3);
+        context_.metric("model-seconds", watch_.lap(), Unit::seconds);
+        find_overlaps(model);
+        context_.metric("overlap-seconds", watch_.lap(), Unit::seconds);
+        choose_groups(model);
+        if (result_.doubt.empty()) discard_vertices(model);
+        context_.progress(0.4);
+        context_.metric("segmentation-seconds", watch_.lap(), Unit::seconds);
+        result_.features = loops();
+        if (result_.doubt.empty())
+            rebuild(model);
+        else
+            keep(model);
+        context_.metric("reconstruction-seconds", watch_.lap(), Unit::seconds);
+        report();
+        return std::move(result_);
+    }
+
+private:
+    void require_inputs() {
+        require_triangles(given_, "an update needs a closed model");
+        if (clouds_.empty()) throw Error("an update needs at least one cloud; there are 0").hint("wire `points`");
+        for (std::size_t i = 0; i < clouds_.size(); ++i) {
+            const PointCloud& cloud = *clouds_[i];
+            try {
+                require_points(cloud, "an update needs a local scan");
+                require_same_frame(given_.frame, "the model is", cloud.frame, "the cloud");
+            } catch (Error& error) {
+                if (clouds_.size() > 1) error.add_frame(fmt::format("in {}", name_of(i)));
+                throw;
+            }
+        }
+        for (const auto& cloud : clouds_) result_.added += cloud->size();
+        std::vector<bool> is_used(given_.positions.size());
+        for (const Triangle& t : given_.triangles)
+            for (const u32 vertex : t) is_used[vertex] = true;
+        result_.initial = static_cast<std::size_t>(std::ranges::count(is_used, true));
+    }
+
+    std::string name_of(std::size_t cloud) const {
+        return clouds_.size() == 1 ? "the cloud" : fmt::format("cloud {} of {}", cloud + 1, clouds_.size());
+    }
+    std::string name_of(const CloudGroup& group) const {
+        if (group.numbers.size() == 1) return name_of(group.numbers[0]);
+        std::vector<std::string> numbers;
+        for (const u32 number : group.numbers) numbers.push_back(std::to_string(number + 1));
+        return fmt::format("clouds {} of {}", enumerated(numbers), clouds_.size());
+    }
+
+    /// The positions of all clouds, one after another, relative to the model's origin.
+    void reconstruct_clouds() {
+        std::vector<CloudGroup> single;
+        for (u32 i = 0; i < clouds_.size(); ++i) {
+            const PointCloud& cloud = *clouds_[i];
+            const Buffer<Vec3> moved = translated(cloud.positions, cloud.frame.origin - given_.frame.origin);
+            CloudGroup group;
+            group.numbers = {i};
+            group.rows.resize(moved.size());
+            std::iota(group.rows.begin(), group.rows.end(), static_cast<u32>(positions_.size()));
+            group.positions = moved;
+            positions_.insert(positions_.end(), moved.begin(), moved.end());
+            group.surface = surface_of(group);
+            single.push_back(std::move(group));
+        }
+        DisjointSets sets(single.size());
+        for (u32 i = 0; i < single.size(); ++i)
+            for (u32 j = i + 1; j < single.size(); ++j)
+                if (come_near(single[i].surface, single[j].surface)) sets.unite(i, j);
+        for (u32 i = 0; i < single.size(); ++i) {
+            if (sets.find(i) != i) continue;
+            CloudGroup group;
+            for (u32 j = 0; j < single.size(); ++j)
+                if (sets.find(j) == i) group.numbers.push_back(j);
+            if (group.numbers.size() == 1) {
+                groups_.push_back(std::move(single[i]));
+                continue;
+            }
+            Array<Vec3> joined;
+            for (const u32 number : group.numbers) {
+                joined.insert(joined.end(), single[number].positions.begin(), single[number].positions.end());
+                group.rows.insert(group.rows.end(), single[number].rows.begin(), single[number].rows.end());
+            }
+            group.positions = std::move(joined);
+            group.surface = surface_of(group);
+            groups_.push_back(std::move(group));
+        }
+    }
+
+    CloudSurface surface_of(const CloudGroup& group) {
+        NestedContext nested(context_);
+        try {
+            return cloud_surface(group.positions, given_.frame, nested);
+        } catch (Error& error) {
+            error.add_frame(fmt::format("in the surface of {}", name_of(group)));
+            throw;
+        }
+    }
+
+    bool come_near(const CloudSurface& one, const CloudSurface& other) const {
+        const auto points = [](const CloudSurface& surface) {
+            Array<Vec3> found;
+            for (const CloudLoop& loop : surface.loops)
+                for (const u32 h : loop.half_edges)
+                    found.push_back(surface.mesh.positions[half_edges::start(surface.mesh, h)]);
+            return found;
+        };
+        const PointTree tree(points(one), context_.threads());
+        const double distance = joining_distance * std::max(one.spacing, other.spacing);
+        NeighbourBuffer buffer;
+        return std::ranges::any_of(points(other), [&](const Vec3& point) {
+            return tree.nearest_to(point, 1, buffer)[0].squared < distance * distance;
+        });
+    }
+
+    /// Keeps the first doubt.
+    void doubt(std::string_view kind, const CloudGroup& group, const Vec3& position, const std::string& reason,
+               std::string hint) {
+        if (!result_.doubt.empty()) return;
+        result_.doubt = fmt::format("{}: {}; {}, at {}", kind, name_of(group), reason,
+                                    position_text(position, given_.frame));
+        hint_ = std::move(hint);
+    }
+
+    void find_overlaps(const Model& model) {
+        const double limit = params_.max_distance.value();
+        is_overlap_.assign(model.mesh.triangles.size(), u8(0));
+        for (CloudGroup& group : groups_) {
+            std::vector<CloudLoop> used;
+            for (CloudLoop& loop : group.surface.loops) {
+                LoopOverlap overlap = overlap_of(model, group.surface, loop, limit, context_);
+                if (!lies_on_model(group, loop, overlap)) continue;
+                if (params_.overlap == MeshUpdateParams::Overlap::candidates)
+                    for (const u32 facet : candidate_facets(model, group.surface, loop, limit, context_))
+                        group.overlap.push_back(facet);
+                for (const EdgeOverlap& edge : overlap.edges)
+                    group.overlap.insert(group.overlap.end(), edge.facets.begin(), edge.facets.end());
+                used.push_back(std::move(loop));
+                group.loops.push_back(std::move(overlap));
+            }
+            group.surface.ignored_loops += group.surface.loops.size() - used.size();
+            group.surface.loops = std::move(used);
+            std::ranges::sort(group.overlap);
+            group.overlap.erase(std::unique(group.overlap.begin(), group.overlap.end()), group.overlap.end());
+            for (const u32 facet : group.overlap) is_overlap_[facet] = 1;
+        }
+    }
+
+    /// Whether the loop is used; a loop that is no hole and does not lie on the model is a doubt.
+    bool lies_on_model(const CloudGroup& group, const CloudLoop& loop, LoopOverlap& overlap) {
+        const std::size_t points = overlap.edges.size();
+        const double limit = params_.max_distance.value();
+        if (static_cast<double>(overlap.hanging) > largest_hanging * static_cast<double>(points)) {
+            if (!loop.is_hole)
+                doubt("hanging", group, overlap.farthest,
+                      fmt::format("{} of {} points of a loop are farther than max-distance, {:.4g} {}, from the model, "
+                                  "the farthest {:.4g}",
+                                  overlap.hanging, points, limit, symbol(given_.frame.unit), overlap.farthest_distance),
+                      "check the unit, the frame and the registration of the cloud; the scan must overlap the "
+                      "unchanged model along its whole border");
+            return false;
+        }
+        const double offset = median(overlap.offsets), allowed = largest_offset * group.surface.spacing;
+        if (offset > allowed) {
+            if (!loop.is_hole)
+                doubt("registration", group, overlap.farthest,
+                      fmt::format("the points of a loop are {:.4g} {} from the model on median, more than {:.4g}, half a "
+                                  "spacing of the cloud, the farthest {:.4g}",
+                                  offset, symbol(given_.frame.unit), allowed, overlap.farthest_distance),
+                      "align the cloud with the model by icp, or smooth its noise first");
+            return false;
+        }
+        return true;
+    }
+
+    void choose_groups(const Model& model) {
+        segmentation_ = segmentation(model, is_overlap_, context_);
+        result_.groups = segmentation_.count;
+        is_replaced_.assign(segmentation_.count, false);
+        std::vector<const CloudGroup*> keeper(segmentation_.count, nullptr);
+        std::vector<const CloudGroup*> replacer(segmentation_.count, nullptr);
+        for (CloudGroup& group : groups_) {
+            if (group.loops.empty()) {
+                doubt("hanging", group, group.positions[0], "none of its loops lies on the model",
+                      "the scan must overlap the unchanged model along its whole border");
+                continue;
+            }
+            group.angles = mean_angles(model, segmentation_, group.surface, group.loops, context_);
+            if (group.angles.undivided_loop) {
+                const CloudLoop& loop = group.surface.loops[*group.angles.undivided_loop];
+                doubt("no separation", group, loop_start(group, loop),
+                      fmt::format("a loop of {} edges does not divide the model", loop.half_edges.size()),
+                      "the border of the cloud must surround the change on the model; a scan on both sides of a handle "
+                      "does not");
+            }
+            const Choice choice = chosen_groups(group.angles, params_.angle_gap.in_radians());
+            if (!choice.ambiguity.empty())
+                doubt("ambiguous", group, loop_start(group, group.surface.loops[0]), choice.ambiguity,
+                      "the scan must overlap the unchanged model by several spacings along its whole border");
+            for (const GroupAngle& angle : group.angles.groups) {
+                const bool is_chosen = std::ranges::binary_search(choice.replaced, angle.group);
+                (is_chosen ? replacer : keeper)[angle.group] = &group;
+                if (is_chosen) is_replaced_[angle.group] = true;
+            }
+        }
+        for (std::size_t g = 0; g < segmentation_.count; ++g)
+            if (keeper[g] && replacer[g])
+                doubt("ambiguous", *replacer[g], loop_start(*replacer[g], replacer[g]->surface.loops[0]),
+                      fmt::format("it replaces group {}, which {} leaves", g + 1, name_of(*keeper[g])),
+                      "update with one of them, then with the other");
+        result_.replaced = static_cast<std::size_t>(std::ranges::count(is_replaced_, true));
+        require_kept_groups();
+    }
+
+    /// Something must stay in every component of the model that loses a group.
+    void require_kept_groups() {
+        if (!result_.doubt.empty()) return;
+        for (u32 g = 0; g < segmentation_.count; ++g) {
+            const auto same = [&](u32 other) { return segmentation_.component[other] == segmentation_.component[g]; };
+            bool keeps = !is_replaced_[g];
+            for (u32 other = 0; other < segmentation_.count; ++other) keeps |= same(other) && !is_replaced_[other];
+            if (!keeps)
+                throw Error("the clouds replace all {} of a component of the model",
+                            count_text(segmentation_.count, "group", "groups"))
+                    .hint("a scan of the whole object needs no model: use delaunay and tight-cocone");
+        }
+    }
+
+    Vec3 loop_start(const CloudGroup& group, const CloudLoop& loop) const {
+        return group.surface.mesh.positions[half_edges::start(group.surface.mesh, loop.half_edges[0])];
+    }
+
+    void discard_vertices(const Model& model) {
+        discarded_ = vertices_of_groups(model, segmentation_, is_replaced_);
+        for (const CloudGroup& group : groups_) {
+            const PointTree tree(group.positions.span(), context_.threads());
+            discard_under(model, group.overlap, group.surface, tree, params_.trim, discarded_, context_);
+        }
+    }
+
+    FeatureGraph loops() const {
+        FeatureGraph graph;
+        graph.frame = given_.frame;
+        Array<Vec3> positions, left;
+        Array<u32> vertices;
+        for (const CloudGroup& group : groups_)
+            for (const CloudLoop& loop : group.surface.loops) {
+                const u32 begin = static_cast<u32>(vertices.size());
+                for (const u32 h : loop.half_edges) {
+                    vertices.push_back(static_cast<u32>(positions.size()));
+                    positions.push_back(group.surface.mesh.positions[half_edges::start(group.surface.mesh, h)]);
+                    left.push_back(area_vector(group.surface.mesh.positions.span(), group.surface.mesh.triangles[h / 3])
+                                       .normalized());
+                }
+                graph.polylines.push_back({loop.is_hole ? FeatureType::hole : FeatureType::outer_boundary, true, begin,
+                                           static_cast<u32>(vertices.size())});
+            }
+        graph.right_normals = Array<Vec3>(left.size(), Vec3::Zero());
+        graph.left_normals = std::move(left);
+        graph.positions = std::move(positions);
+        graph.vertices = std::move(vertices);
+        return graph;
+    }
+
+    void rebuild(const Model& model) {
+        const std::size_t model_vertices = model.mesh.positions.size();
+        std::vector<bool> is_used(model_vertices);
+        for (const Triangle& t : model.mesh.triangles)
+            for (const u32 vertex : t) is_used[vertex] = true;
+        Array<u32> rows;
+        for (u32 vertex = 0; vertex < model_vertices; ++vertex) {
+            if (!is_used[vertex]) continue;
+            if (discarded_[vertex] == 1)
+                ++result_.discarded;
+            else
+                rows.push_back(vertex);
+        }
+        result_.kept = rows.size();
+        for (u32 i = 0; i < positions_.size(); ++i) rows.push_back(static_cast<u32>(model_vertices + i));
+        Array<Vec3> all(model.mesh.positions.begin(), model.mesh.positions.end());
+        all.insert(all.end(), positions_.begin(), positions_.end());
+        const Rebuilt rebuilt = rebuild_whole(all, given_.frame, rows, params_, context_);
+        result_.unused = result_.kept + result_.added - rebuilt.rows.size();
+        const Difference changed = difference(model, rebuilt);
+        result_.mesh = updated_mesh(model, clouds_, all, segmentation_, rebuilt, changed.is_new, context_);
+        result_.updated = true;
+    }
+
+    /// Returns the given model with the columns of an update.
+    void keep(const Model& model) {
+        if (params_.on_doubt == MeshUpdateParams::OnDoubt::fail)
+            throw Error("{}", result_.doubt).hint(hint_ + "; `on-doubt: keep` returns the model unchanged");
+        context_.warn(result_.doubt + "; the model is returned unchanged");
+        const Array<u8> would_go = vertices_of_groups(model, segmentation_, is_replaced_);
+        result_.mesh = kept_mesh(given_, model, segmentation_, would_go, context_);
+        result_.kept = result_.initial;
+        result_.added = result_.resampled = 0;
+    }
+
+    void report() {
+        const auto count = [&](std::string_view name, std::size_t value) {
+            context_.metric(name, static_cast<double>(value));
+        };
+        count("updated", result_.updated ? 1 : 0);
+        count("initial", result_.initial);
+        count("resampled", result_.resampled);
+        count("added", result_.added);
+        count("discarded", result_.discarded);
+        count("kept", result_.kept);
+        count("unused-points", result_.unused);
+        count("groups", result_.groups);
+        count("replaced", result_.replaced);
+        std::size_t loops = 0, ignored = 0, edges = 0, paper = 0, angles = 0;
+        for (const CloudGroup& group : groups_) {
+            loops += group.surface.loops.size();
+            ignored += group.surface.ignored_loops;
+            edges += group.surface.boundary_edges;
+            paper += group.surface.paper_edges;
+            for (const GroupAngle& angle : group.angles.groups)
+                context_.metric(numbered("mean-angle", ++angles), angle.mean, Unit::angle);
+        }
+        count("loops", loops);
+        count("ignored-loops", ignored);
+        count("boundary-edges", edges);
+        count("paper-edges", paper);
+    }
+
+    const TriangleMesh& given_;
+    std::span<const std::shared_ptr<const PointCloud>> clouds_;
+    const MeshUpdateParams& params_;
+    Context& context_;
+    StopWatch watch_;
+    Array<Vec3> positions_;  ///< of all clouds, relative to the model's origin
+    std::vector<CloudGroup> groups_;
+    Array<u8> is_overlap_, discarded_;
+    Groups segmentation_;
+    std::vector<bool> is_replaced_;
+    std::string hint_;
+    MeshUpdateResult result_;
+};
+
+}  // namespace
+
+MeshUpdateResult mesh_update(const TriangleMesh& model, std::span<const std::shared_ptr<const PointCloud>> clouds,
+                             const MeshUpdateParams& params, Context& context) {
+    return Update(model, clouds, params, context).run();
+}
+
+}  // namespace scanmill

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Updates a closed mesh where its object was scanned again.
+///
+/// 1. The surface of each cloud is reconstructed, and its boundary loops are found (cloud_surface.hpp).
+/// 2. The loops are followed on the model; the facets under them are the overlap facets (overlap.hpp).
+/// 3. The overlap facets divide the model into groups (groups.hpp).
+/// 4. The angle condition chooses the groups that a cloud replaces (groups.hpp).
+/// 5. The vertices of those groups are discarded (replacement.hpp).
+/// 6. Tight cocone makes a closed surface through the vertices that are kept and the points of the clouds. With
+///    Rebuild::local, it does so around the change only, and all other triangles stay (local_rebuild.hpp).
+///
+/// Before step 2, edges of the model longer than `density` spacings of the cloud are split (resample.hpp): a CAD model
+/// has too few vertices for step 6.
+///
+/// Source: Woo, Dey 2005. Resampling, closed barriers, doubts and the local rebuild are our own.
+
+#include <memory>
+#include <span>
+
+#include "scanmill/data/features.hpp"
+#include "tight_cocone/tight_cocone.hpp"
+
+namespace scanmill {
+
+struct MeshUpdateParams : TightCoconeParams {
+    enum class Rebuild {
+        whole,  ///< tight cocone of all points
+        local  ///< tight cocone around the change; all else keeps its bytes
+    };
+    enum class Overlap {
+        projected,  ///< facets under the boundary
+        candidates  ///< also all facets at the vertices nearest to boundary points
+    };
+    enum class OnDoubt {
+        fail,  ///< throw an Error
+        keep  ///< return the model, with a warning
+    };
+    Rebuild rebuild = Rebuild::whole;
+    /// Boundary points of a cloud farther from the model have no overlap facet; above 0.
+    Length max_distance = Length::spacings(3);
+    Overlap overlap = Overlap::projected;
+    /// The mean angles of two groups must differ by more than this; 0 to 90 degrees.
+    Angle angle_gap = Angle::degrees(20);
+    /// Vertices of overlap facets nearer to a point of the cloud are discarded; 0 or more, in local spacings of the cloud.
+    double trim = 0.3;
+    /// Longer edges of the model are split; above 0, in spacings of the cloud.
+    double density = 4;
+    OnDoubt on_doubt = OnDoubt::fail;
+};
+
+struct MeshUpdateResult {
+    /// Closed and outward. Vertices of the model in their order, then points of the clouds; vertex columns `source`
+    /// (uint32; 0: the model, j: cloud j), `group` (int32; from 1, or -1 on overlap facets and for points of clouds) and
+    /// `replaced` (uint8; 1 only where OnDoubt::keep left what would have been discarded), and face column `updated` (1:
+    /// not a triangle of the model).
+    TriangleMesh mesh;
+    /// The loops of the clouds, as outer boundaries and holes.
+    FeatureGraph features;
+    bool updated = false;
+    std::size_t initial = 0;  ///< vertices of the model that are in triangles
+    std::size_t resampled = 0;  ///< vertices that splitting edges added
+    std::size_t added = 0;  ///< points of all clouds
+    std::size_t discarded = 0, kept = 0;  ///< initial + resampled = discarded + kept
+    std::size_t unused = 0;  ///< kept + added - vertices of the result
+    std::size_t groups = 0, replaced = 0;
+    std::string doubt;  ///< why the model was kept; empty if updated
+};
+
+/// Pre:  the model is closed, a manifold, faces outwards and does not intersect itself; clouds have at least one point;
+///       one unit for all (origins may differ); parameters in their ranges, lengths resolved. Throws Error otherwise,
+///       and with OnDoubt::fail for each of these doubts, with cloud, position and numbers:
+///        - hanging: more than a fifth of a loop is farther than max_distance from the model;
+///        - registration: the median distance of a loop's points from their facets exceeds half a spacing of the cloud;
+///        - no separation: a loop has one group on both sides;
+///        - ambiguous: the angles do not decide, or clouds disagree.
+///       A hole in a cloud that hangs, or lies beside the model, is no loop: tight cocone closes it. One doubt stops the
+///       whole update.
+/// Post: every vertex of the model that is not discarded keeps its coordinates, bit for bit. With OnDoubt::keep and a
+///       doubt, positions and triangles are those of the given model. The result does not depend on the number of
+///       threads, nor on which way the clouds' or the model's triangles were found.
+///       Clouds whose loops come within two spacings of each other count as one.
+/// Ties: of equally near facets, that with the lowest row; of equally near vertices, the lowest.
+/// Cost: whole: that of delaunay() and tight_cocone() on all points; local: one pass over the model, then the change.
+/// Metrics: see plugin.cpp. Doubts a result whose topology is not that of the kept groups joined with the clouds'
+///       surfaces, and passes on the doubts of tight_cocone().
+MeshUpdateResult mesh_update(const TriangleMesh& model, std::span<const std::shared_ptr<const PointCloud>> clouds,
+                             const MeshUpdateParams& params, Context& context);
+
+}  // namespace scanmill

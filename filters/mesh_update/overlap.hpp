@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The overlap facets: facets of the model under the boundary of a cloud. They form a closed barrier under every loop.
+///
+/// The paper marks facets under boundary points only. A cloud that is sparser than the model leaves gaps between them, so
+/// here every boundary edge is followed on the model, from facet to facet across edges.
+///
+/// Source: Woo, Dey 2005, section 3.3, equations 1 to 3.
+
+#include <optional>
+#include <vector>
+
+#include "mesh_update/cloud_surface.hpp"
+#include "mesh_update/model.hpp"
+
+namespace scanmill::updating {
+
+/// A point against the plane of a facet.
+struct Projection {
+    double distance;  ///< D of equation 2, positive on the side that the facet faces
+    Vec3 foot;  ///< equation 3
+    bool is_inside;  ///< whether the foot is in the facet, border included
+};
+/// Pre: the facet has an area. Seen from a foot in the facet, the angles between its corners add up to 2π; this is tested
+/// with barycentric coordinates, to 1e-9 of them.
+Projection project(const Vec3& point, const std::array<Vec3, 3>& facet);
+
+/// A boundary edge of a cloud on the model.
+struct EdgeOverlap {
+    u32 half_edge;  ///< in the cloud's surface
+    /// Facets from that under the edge's start to that under its end, each with an edge in common with one before it;
+    /// without repeats. Empty if no facet is under an end.
+    std::vector<u32> facets;
+    /// Nearest point of the model to the middle of the edge; absent if farther than max_distance.
+    std::optional<Vec3> foot;
+};
+
+struct LoopOverlap {
+    std::vector<EdgeOverlap> edges;  ///< in the order of the loop
+    std::vector<double> offsets;  ///< |D| of the boundary points with an overlap facet
+    std::size_t hanging = 0;  ///< boundary points farther than max_distance from the model
+    Vec3 farthest = Vec3::Zero();  ///< the boundary point farthest from the model
+    double farthest_distance = 0;
+};
+
+/// `max_distance`: boundary points farther from the model have no overlap facet.
+/// Ties: of equally near facets, that with the lowest row.
+/// Cost: O(log F) per boundary edge, and the facets under it.
+LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
+                       Context& context);
+
+/// All facets at the model's vertices nearest to the loop's boundary points: the paper's thick border. Ascending.
+std::vector<u32> candidate_facets(const Model& model, const CloudSurface& cloud, const CloudLoop& loop,
+                                  double max_distance, Context& context);
+
+}  // namespace scanmill::updating

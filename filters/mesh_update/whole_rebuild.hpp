@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `rebuild: whole`: a closed surface through all points that are kept, by tight cocone.
+
+#include "tight_cocone/tight_cocone.hpp"
+
+namespace scanmill::updating {
+
+/// A closed mesh whose vertices are rows of a list of points.
+struct Rebuilt {
+    Array<u32> rows;  ///< by vertex, ascending
+    Array<Triangle> triangles;  ///< corners are vertices
+};
+
+/// tight_cocone() of the points at these rows, with its warnings and doubts. Throws Error as it does.
+Rebuilt rebuild_whole(std::span<const Vec3> positions, const Frame& frame, std::span<const u32> rows,
+                      const TightCoconeParams& params, Context& context);
+
+/// A Context with the threads and the cancellation of another one, which nothing else reaches.
+class NestedContext : public Context {
+public:
+    explicit NestedContext(const Context& outer);
+};
+
+}  // namespace scanmill::updating
