@@ -24,23 +24,12 @@ const std::string row_column = "row";
 
 std::size_t edges_between_boundary_points(const TriangleMesh& mesh) {
     const std::span<const u8> is_boundary = mesh.vertex_columns.find("boundary")->values<u8>();
-    std::size_t half_edges = 0, single = 0;
+    std::size_t edges = 0;
     const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(mesh);
     half_edges::for_each_edge(by_vertex, [&](u32 vertex, std::span<const half_edges::VertexHalfEdge> edge) {
-        half_edges += is_boundary[vertex] == 1 && is_boundary[edge[0].other] == 1;
-        ++single;
+        edges += is_boundary[vertex] == 1 && is_boundary[edge[0].other] == 1;
     });
-    return half_edges;
-}
-
-/// By triangle, the number of its component.
-Array<u32> components_of(std::span<const u32> opposite) {
-    DisjointSets sets(opposite.size() / 3);
-    for (u32 h = 0; h < opposite.size(); ++h)
-        if (opposite[h] < half_edges::no_half_edge) sets.unite(h / 3, opposite[h] / 3);
-    Array<u32> component(opposite.size() / 3);
-    for (u32 t = 0; t < component.size(); ++t) component[t] = sets.find(t);
-    return component;
+    return edges;
 }
 
 void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
@@ -74,6 +63,15 @@ void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
 }
 
 }  // namespace
+
+Array<u32> components_of(std::span<const u32> opposite) {
+    DisjointSets sets(opposite.size() / 3);
+    for (u32 h = 0; h < opposite.size(); ++h)
+        if (opposite[h] < half_edges::no_half_edge) sets.unite(h / 3, opposite[h] / 3);
+    Array<u32> component(opposite.size() / 3);
+    for (u32 t = 0; t < component.size(); ++t) component[t] = sets.find(t);
+    return component;
+}
 
 CloudSurface cloud_surface(const Buffer<Vec3>& positions, const Frame& frame, Context& context) {
     PointCloud cloud;

@@ -44,4 +44,7 @@ struct CloudSurface {
 /// Cost: that of delaunay() and cocone().
 CloudSurface cloud_surface(const Buffer<Vec3>& positions, const Frame& frame, Context& context);
 
+/// By triangle, a number that the triangles connected with it through edges share. Pre: as half_edges::opposites().
+Array<u32> components_of(std::span<const u32> opposite);
+
 }  // namespace scanmill::updating

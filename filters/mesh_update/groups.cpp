@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::updating {
@@ -79,6 +80,7 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
     struct Sum {
         double angles = 0;
         std::size_t edges = 0;
+        double share = 0;  ///< largest share of a loop's edges
     };
     struct Nearest {
         double squared;
@@ -114,38 +116,92 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
                 ++sum.edges;
             }
         }
-        if (at_loop.size() < 2 && !result.undivided_loop) result.undivided_loop = i;
+        const auto is_group = [&](const auto& entry) {
+            return static_cast<double>(entry.second.edges) >=
+                   least_group_share * static_cast<double>(loops[i].edges.size());
+        };
+        if (std::ranges::count_if(at_loop, is_group) < 2 && !result.undivided_loop) result.undivided_loop = i;
         for (const auto& [group, sum] : at_loop) {
-            sums[group].angles += sum.angles;
-            sums[group].edges += sum.edges;
+            Sum& all = sums[group];
+            all.angles += sum.angles;
+            all.edges += sum.edges;
+            all.share = std::max(all.share,
+                                 static_cast<double>(sum.edges) / static_cast<double>(loops[i].edges.size()));
         }
     }
     for (const auto& [group, sum] : sums)
-        result.groups.push_back({group, sum.angles / static_cast<double>(sum.edges), sum.edges});
+        result.groups.push_back({group, sum.angles / static_cast<double>(sum.edges), sum.share});
     return result;
 }
 
 Choice chosen_groups(const CloudAngles& angles, double gap) {
     constexpr double right_angle = std::numbers::pi / 2;
     Choice choice;
-    const std::vector<GroupAngle>& all = angles.groups;
-    if (all.size() == 2) {
-        const double difference = std::abs(all[0].mean - all[1].mean);
-        if (difference > gap)
-            choice.replaced = {all[0].mean < all[1].mean ? all[0].group : all[1].group};
+    std::vector<GroupAngle> groups;
+    for (const GroupAngle& angle : angles.groups)
+        if (angle.share >= least_group_share)
+            groups.push_back(angle);
+        else if (angle.mean < right_angle)
+            choice.replaced.push_back(angle.group);
+    if (groups.size() == 2) {
+        const auto& [low, high] = std::minmax(groups[0], groups[1], [](const GroupAngle& a, const GroupAngle& b) {
+            return a.mean < b.mean;
+        });
+        if (high.mean - low.mean > gap)
+            choice.replaced.push_back(low.group);
         else
             choice.ambiguity = fmt::format("the mean angles {:.1f}° and {:.1f}° of groups {} and {} differ by {:.1f}°",
-                                           degrees(all[0].mean), degrees(all[1].mean), all[0].group + 1,
-                                           all[1].group + 1, degrees(difference));
-        return choice;
+                                           degrees(low.mean), degrees(high.mean), low.group + 1, high.group + 1,
+                                           degrees(high.mean - low.mean));
+    } else {
+        for (const GroupAngle& angle : groups) {
+            if (std::abs(angle.mean - right_angle) <= gap / 2 && choice.ambiguity.empty())
+                choice.ambiguity = fmt::format("the mean angle {:.1f}° of group {} is within {:.1f}° of 90°",
+                                               degrees(angle.mean), angle.group + 1, degrees(gap / 2));
+            if (angle.mean < right_angle) choice.replaced.push_back(angle.group);
+        }
     }
-    for (const GroupAngle& angle : all) {
-        if (std::abs(angle.mean - right_angle) <= gap / 2 && choice.ambiguity.empty())
-            choice.ambiguity = fmt::format("the mean angle {:.1f}° of group {} is within {:.1f}° of 90°",
-                                           degrees(angle.mean), angle.group + 1, degrees(gap / 2));
-        if (angle.mean < right_angle) choice.replaced.push_back(angle.group);
-    }
+    std::ranges::sort(choice.replaced);
     return choice;
+}
+
+long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced) {
+    const auto stays = [&](u32 facet) {
+        const std::int32_t group = groups.of_facet[facet];
+        return group == Groups::overlap || !replaced[static_cast<std::size_t>(group)];
+    };
+    long facets = 0, border = 0, vertices = 0;
+    std::vector<u8> state(model.mesh.positions.size(), u8(0));  // 1: some facet stays, 2: some facet goes
+    for (u32 h = 0; h < model.opposite.size(); ++h) {
+        state[model.start(h)] = static_cast<u8>(state[model.start(h)] | (stays(h / 3) ? 1 : 2));
+        if (!stays(h / 3)) continue;
+        facets += h % 3 == 0;
+        border += !stays(model.opposite[h] / 3);
+    }
+    for (const u8 flags : state) vertices += flags == 1;
+    // Every open fan has one border half-edge that leaves its vertex.
+    return vertices + border - (3 * facets + border) / 2 + facets;
+}
+
+long euler_of(const CloudSurface& cloud) {
+    const Array<u32> opposite = half_edges::opposites(cloud.mesh);
+    const Array<u32> component = components_of(opposite);
+    std::vector<bool> is_used(component.size());
+    for (const CloudLoop& loop : cloud.loops) is_used[component[loop.half_edges[0] / 3]] = true;
+    long facets = 0, border = 0, vertices = 0, loops = 0;
+    std::vector<u8> state(cloud.mesh.positions.size(), u8(0));  // 1: in a facet, 2: on the border
+    for (u32 h = 0; h < opposite.size(); ++h) {
+        if (!is_used[component[h / 3]]) continue;
+        const bool is_border = opposite[h] == half_edges::boundary;
+        for (const u32 v : {half_edges::start(cloud.mesh, h), half_edges::end(cloud.mesh, h)})
+            state[v] = static_cast<u8>(state[v] | (is_border ? 3 : 1));
+        facets += h % 3 == 0;
+        border += is_border;
+    }
+    for (const u8 flags : state) vertices += flags == 1;
+    for (const Array<u32>& loop : boundary_loops(cloud.mesh, opposite)) loops += is_used[component[loop[0] / 3]];
+    const long filled = loops - static_cast<long>(cloud.loops.size());
+    return vertices + border - (3 * facets + border) / 2 + facets + filled;
 }
 
 }  // namespace scanmill::updating

@@ -38,8 +38,11 @@ double dihedral_angle(const Vec3& start, const Vec3& end, const Vec3& apex, cons
 struct GroupAngle {
     u32 group;
     double mean;  ///< in radians
-    std::size_t edges;  ///< boundary edges at which the group has a vertex
+    double share;  ///< largest share of a loop's edges at which the group has a vertex
 };
+
+/// Groups at a smaller share of every loop are fragments: overlap facets that touch enclose a few facets between them.
+inline constexpr double least_group_share = 0.1;
 
 struct CloudAngles {
     std::vector<GroupAngle> groups;  ///< those at the cloud's loops, ascending
@@ -58,7 +61,14 @@ struct Choice {
 };
 
 /// The groups that one cloud replaces. Of two groups, the one with the smaller mean angle; they must differ by more than
-/// `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°.
+/// `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°. Fragments do not count as
+/// groups here; those below 90° are replaced, too.
 Choice chosen_groups(const CloudAngles& angles, double gap);
+
+/// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments, so
+/// without the replaced groups. Where that part touches itself in a vertex, the vertex counts once per fan. Cost: linear.
+long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced);
+/// V - E + F of the components of the cloud's surface that have a loop in use, with their other loops filled.
+long euler_of(const CloudSurface& cloud);
 
 }  // namespace scanmill::updating

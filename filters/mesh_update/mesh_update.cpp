@@ -16,7 +16,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/spacing.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
@@ -32,6 +32,9 @@ constexpr double joining_distance = 2;
 constexpr double largest_hanging = 0.2;
 /// Largest median distance of a loop's points from their overlap facets, in spacings of the cloud.
 constexpr double largest_offset = 0.5;
+
+/// Above this share of unused points, compared with the points of the clouds, a result is doubtful.
+constexpr double most_unused = 0.02;
 
 /// Clouds that are updated as one: usually a single cloud.
 struct CloudGroup {
@@ -380,6 +383,24 @@ private:
         const Difference changed = difference(model, rebuilt);
         result_.mesh = updated_mesh(model, clouds_, all, segmentation_, rebuilt, changed.is_new, context_);
         result_.updated = true;
+        doubt_result(model);
+    }
+
+    /// Doubts a result that is not the rest of the model joined with the surfaces of the clouds.
+    void doubt_result(const Model& model) {
+        if (static_cast<double>(result_.unused) > most_unused * static_cast<double>(result_.added))
+            context_.doubt(fmt::format("{} kept vertices and points of the clouds are not on the surface: the clouds "
+                                       "are noisy, or not registered with the model",
+                                       result_.unused),
+                           "mesh");
+        long expected = euler_of_rest(model, segmentation_, is_replaced_);
+        for (const CloudGroup& group : groups_) expected += euler_of(group.surface);
+        const long found = topology(result_.mesh).euler;
+        if (found != expected)
+            context_.doubt(fmt::format("the result has the Euler characteristic {}; the rest of the model and the "
+                                       "surfaces of the clouds give {}",
+                                       found, expected),
+                           "mesh");
     }
 
     /// Returns the given model with the columns of an update.
