@@ -6,6 +6,7 @@
 
 #include "cocone/cocone.hpp"
 #include "delaunay/delaunay.hpp"
+#include "delaunay/flatness.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/half_edges.hpp"
@@ -20,6 +21,9 @@ namespace {
 constexpr std::size_t least_edges = 8;
 /// Shares of the longest loop below which other loops are ignored.
 constexpr double least_share = 0.1;
+/// A loop whose projected area does not decide whether it is a hole is one if it is shorter than this share of the
+/// longest; both loops of a tube are outer.
+constexpr double hole_share = 0.5;
 const std::string row_column = "row";
 
 std::size_t edges_between_boundary_points(const TriangleMesh& mesh) {
@@ -30,6 +34,18 @@ std::size_t edges_between_boundary_points(const TriangleMesh& mesh) {
         edges += is_boundary[vertex] == 1 && is_boundary[edge[0].other] == 1;
     });
     return edges;
+}
+
+/// The positions; if they all lie in one plane, as simulated scans do, moved off it by a millionth of their extent.
+Buffer<Vec3> spatial(const Buffer<Vec3>& positions, const Frame& frame, Context& context) {
+    constexpr double share = 1e-6;
+    const Extents found = extents(positions.span(), frame.origin, context.threads());
+    if (found.from_plane > found.rounding || found.from_line <= found.rounding) return positions;
+    Random random = context.random();
+    Array<Vec3> moved(positions.begin(), positions.end());
+    for (Vec3& position : moved)
+        for (double& coordinate : position) coordinate += share * found.from_point * random.uniform(-1, 1);
+    return moved;
 }
 
 void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
@@ -56,7 +72,8 @@ void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
         const bool is_used = loops[i].size() >= least_edges && own >= least_share * all &&
                              shapes[i].length >= least_share * own;
         if (is_used)
-            surface.loops.push_back({loops[i], shapes[i].length, shapes[i].clear && !is_outer[i]});
+            surface.loops.push_back({loops[i], shapes[i].length,
+                                     !is_outer[i] && (shapes[i].clear || shapes[i].length < hole_share * own)});
         else
             ++surface.ignored_loops;
     }
@@ -76,7 +93,7 @@ Array<u32> components_of(std::span<const u32> opposite) {
 CloudSurface cloud_surface(const Buffer<Vec3>& positions, const Frame& frame, Context& context) {
     PointCloud cloud;
     cloud.frame = frame;
-    cloud.positions = positions;
+    cloud.positions = spatial(positions, frame, context);
     Array<u32> rows(positions.size());
     std::iota(rows.begin(), rows.end(), u32(0));
     cloud.columns.add(Column(row_column, 1, Buffer<u32>(std::move(rows))));

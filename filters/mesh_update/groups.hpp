@@ -42,7 +42,7 @@ struct GroupAngle {
 };
 
 /// Groups at a smaller share of every loop are fragments: overlap facets that touch enclose a few facets between them.
-inline constexpr double least_group_share = 0.1;
+inline constexpr double least_group_share = 0.5;
 
 struct CloudAngles {
     std::vector<GroupAngle> groups;  ///< those at the cloud's loops, ascending

@@ -43,7 +43,6 @@ struct CloudGroup {
     Buffer<Vec3> positions;
     CloudSurface surface;
     std::vector<LoopOverlap> loops;  ///< of the loops of the surface that are used
-    std::vector<u32> overlap;  ///< facets, ascending
     CloudAngles angles;
 };
 
@@ -223,25 +222,18 @@ private:
 
     void find_overlaps(const Model& model) {
         const double limit = params_.max_distance.value();
-        is_overlap_.assign(model.mesh.triangles.size(), u8(0));
         for (CloudGroup& group : groups_) {
             std::vector<CloudLoop> used;
             for (CloudLoop& loop : group.surface.loops) {
                 LoopOverlap overlap = overlap_of(model, group.surface, loop, limit, context_);
                 if (!lies_on_model(group, loop, overlap)) continue;
                 if (params_.overlap == MeshUpdateParams::Overlap::candidates)
-                    for (const u32 facet : candidate_facets(model, group.surface, loop, limit, context_))
-                        group.overlap.push_back(facet);
-                for (const EdgeOverlap& edge : overlap.edges)
-                    group.overlap.insert(group.overlap.end(), edge.facets.begin(), edge.facets.end());
+                    add_candidates(model, group.surface, loop, limit, overlap, context_);
                 used.push_back(std::move(loop));
                 group.loops.push_back(std::move(overlap));
             }
             group.surface.ignored_loops += group.surface.loops.size() - used.size();
             group.surface.loops = std::move(used);
-            std::ranges::sort(group.overlap);
-            group.overlap.erase(std::unique(group.overlap.begin(), group.overlap.end()), group.overlap.end());
-            for (const u32 facet : group.overlap) is_overlap_[facet] = 1;
         }
     }
 
@@ -272,8 +264,36 @@ private:
         return true;
     }
 
+    void divide(const Model& model) {
+        Array<u8> is_overlap(model.mesh.triangles.size(), u8(0));
+        for (const CloudGroup& group : groups_)
+            for (const LoopOverlap& loop : group.loops)
+                for (const u32 facet : loop.facets) is_overlap[facet] = 1;
+        segmentation_ = segmentation(model, is_overlap, context_);
+    }
+
+    /// Ignores holes at which the angles do not decide: pinholes of a noisy cloud rather than parts that were not
+    /// scanned. Returns whether there was one.
+    bool ignores_holes(const Model& model) {
+        bool found = false;
+        for (CloudGroup& group : groups_)
+            for (std::size_t i = group.loops.size(); i-- > 0;) {
+                if (!group.surface.loops[i].is_hole) continue;
+                const CloudAngles angles = mean_angles(model, segmentation_, group.surface,
+                                                       std::span(group.loops).subspan(i, 1), context_);
+                if (!angles.undivided_loop && chosen_groups(angles, params_.angle_gap.in_radians()).ambiguity.empty())
+                    continue;
+                group.surface.loops.erase(group.surface.loops.begin() + static_cast<std::ptrdiff_t>(i));
+                group.loops.erase(group.loops.begin() + static_cast<std::ptrdiff_t>(i));
+                ++group.surface.ignored_loops;
+                found = true;
+            }
+        return found;
+    }
+
     void choose_groups(const Model& model) {
-        segmentation_ = segmentation(model, is_overlap_, context_);
+        divide(model);
+        while (ignores_holes(model)) divide(model);
         result_.groups = segmentation_.count;
         is_replaced_.assign(segmentation_.count, false);
         std::vector<const CloudGroup*> keeper(segmentation_.count, nullptr);
@@ -333,7 +353,10 @@ private:
         discarded_ = vertices_of_groups(model, segmentation_, is_replaced_);
         for (const CloudGroup& group : groups_) {
             const PointTree tree(group.positions.span(), context_.threads());
-            discard_under(model, group.overlap, group.surface, tree, params_.trim, discarded_, context_);
+            std::vector<u32> overlap;
+            for (const LoopOverlap& loop : group.loops)
+                overlap.insert(overlap.end(), loop.facets.begin(), loop.facets.end());
+            discard_under(model, overlap, group.surface, tree, params_.trim, discarded_, context_);
         }
     }
 
@@ -449,7 +472,7 @@ private:
     StopWatch watch_;
     Array<Vec3> positions_;  ///< of all clouds, relative to the model's origin
     std::vector<CloudGroup> groups_;
-    Array<u8> is_overlap_, discarded_;
+    Array<u8> discarded_;
     Groups segmentation_;
     std::vector<bool> is_replaced_;
     std::string hint_;

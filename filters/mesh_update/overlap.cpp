@@ -20,6 +20,11 @@ constexpr int most_halvings = 12;
 /// sheets there.
 constexpr std::size_t most_visited = 10'000;
 
+void sort_unique(std::vector<u32>& facets) {
+    std::ranges::sort(facets);
+    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+}
+
 struct Hit {
     u32 facet, slot;
     Vec3 foot;
@@ -153,19 +158,21 @@ LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const Clou
         facets.push_back(hits[i].facet);
         tracer.trace(start(loop.half_edges[i]), hits[i].facet, start(loop.half_edges[j]), hits[j].facet, facets);
         facets.push_back(hits[j].facet);
-        std::ranges::sort(facets);
-        facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+        sort_unique(facets);
         k += length;
     }
+    for (const EdgeOverlap& edge : result.edges)
+        result.facets.insert(result.facets.end(), edge.facets.begin(), edge.facets.end());
+    sort_unique(result.facets);
     return result;
 }
 
-std::vector<u32> candidate_facets(const Model& model, const CloudSurface& cloud, const CloudLoop& loop,
-                                  double max_distance, Context& context) {
+void add_candidates(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
+                    LoopOverlap& overlap, Context& context) {
     const TriangleTree vertices = tree_of_points(model.mesh.positions.span(), context.threads());
     std::vector<u32> corner_at(model.mesh.positions.size(), half_edges::boundary);
     for (u32 h = static_cast<u32>(model.opposite.size()); h-- > 0;) corner_at[model.start(h)] = h;
-    std::vector<u32> facets;
+    std::vector<u32>& facets = overlap.facets;
     for (const u32 h : loop.half_edges) {
         const Vec3& point = cloud.mesh.positions[half_edges::start(cloud.mesh, h)];
         const NearestTriangle nearest = vertices.nearest(point);
@@ -173,9 +180,7 @@ std::vector<u32> candidate_facets(const Model& model, const CloudSurface& cloud,
         if (corner_at[nearest.triangle] == half_edges::boundary) continue;
         model.for_each_around(corner_at[nearest.triangle], [&](u32 around) { facets.push_back(around / 3); });
     }
-    std::ranges::sort(facets);
-    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
-    return facets;
+    sort_unique(facets);
 }
 
 }  // namespace scanmill::updating

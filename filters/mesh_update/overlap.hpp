@@ -37,6 +37,7 @@ struct EdgeOverlap {
 
 struct LoopOverlap {
     std::vector<EdgeOverlap> edges;  ///< in the order of the loop
+    std::vector<u32> facets;  ///< those of all edges, ascending
     std::vector<double> offsets;  ///< |D| of the boundary points with an overlap facet
     std::size_t hanging = 0;  ///< boundary points farther than max_distance from the model
     Vec3 farthest = Vec3::Zero();  ///< the boundary point farthest from the model
@@ -49,8 +50,8 @@ struct LoopOverlap {
 LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
                        Context& context);
 
-/// All facets at the model's vertices nearest to the loop's boundary points: the paper's thick border. Ascending.
-std::vector<u32> candidate_facets(const Model& model, const CloudSurface& cloud, const CloudLoop& loop,
-                                  double max_distance, Context& context);
+/// Adds all facets at the model's vertices nearest to the loop's boundary points: the paper's thick border.
+void add_candidates(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
+                    LoopOverlap& overlap, Context& context);
 
 }  // namespace scanmill::updating
