@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_update/resample.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::updating {
 
@@ -67,7 +67,7 @@ double least_added(const TriangleMesh& mesh, double longest) {
     for (const Triangle& triangle : mesh.triangles) {
         if (half_edges::has_repeated_vertex(triangle)) continue;
         const auto [a, b, c] = corners(mesh.positions.span(), triangle);
-        twice_area += (b - a).cross(c - a).norm();
+        twice_area += area_vector(a, b, c).norm();
         for (const double length : {(b - a).norm(), (c - b).norm(), (a - c).norm()})
             halves_of_edges += std::max(0.0, std::ceil(length / longest) - 1);
     }
@@ -116,7 +116,7 @@ public:
                 context.check_cancelled();
                 // The number of splits grows as the area over the squared length.
                 progress = std::max(progress, squared_longest_ / edge.squared_length);
-                context.progress(progress);
+                context.progress(resampling_begin + (resampling_end - resampling_begin) * progress);
             }
             if (edge_of(edge.half_edge) != edge.vertices || !is_split(edge.half_edge)) continue;
             if (parents_.size() == most_) refuse(fmt::format("more than {}", most_), longest_, !counts_, most_);
@@ -359,9 +359,7 @@ Resampled resampled(const TriangleMesh& mesh, double longest, const Counts& coun
             refuse(fmt::format("at least {:.0f}", least), longest, true, most);
     Splitting splitting(mesh, std::move(*judged), longest, counts, most);
     splitting.run(context);
-    Resampled result = splitting.result();
-    context.progress(1);
-    return result;
+    return splitting.result();
 }
 
 }  // namespace scanmill::updating

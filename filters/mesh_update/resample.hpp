@@ -14,6 +14,9 @@ namespace scanmill::updating {
 /// Default limit of the number of points that resampled() adds.
 inline constexpr std::size_t most_added = 50'000'000;
 
+/// The progress that resampled() reports, as fractions of the whole filter.
+inline constexpr double resampling_begin = 0.2, resampling_end = 0.3;
+
 struct Resampled {
     TriangleMesh mesh;
     std::size_t added = 0;  ///< number of new vertices
@@ -26,10 +29,10 @@ struct Resampled {
 /// depend on the corners only. If it is empty, all triangles count.
 ///
 /// Pre:  finite vertices. Triangles with a repeated vertex, and two triangles with the same three vertices, stay as
-///       they are. Unless it returns the mesh unchanged, the function throws Error where half_edges::opposites() does,
-///       so edges have at most two triangles, oriented consistently. It throws Error if `longest` is not above 0. It
-///       throws Error if more than `most` points would be added: at the start if the areas or edges prove it and
-///       all triangles count, else when the limit is reached.
+///       they are. Throws Error if `longest` is not above 0, or if more than `most` points would be added: at the start
+///       if all triangles count and the areas or edge lengths prove it, else when the limit is reached. If there is
+///       something to split, throws Error where half_edges::opposites() does: edges have at most two triangles,
+///       oriented consistently.
 /// Post: without `counts`, no edge is longer than `longest`. If there is nothing to split, the result shares all memory
 ///       with `mesh`. Else the old vertices keep their rows, and the new ones follow in the order of the splits. A
 ///       split triangle keeps its row for the half with the lower vertex row of the split edge; the other half is
