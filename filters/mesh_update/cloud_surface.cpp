@@ -69,11 +69,11 @@ void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
     const double all = longest.empty() ? 0 : *std::ranges::max_element(longest);
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double own = longest[component[loops[i][0] / 3]];
-        const bool is_used = loops[i].size() >= least_edges && own >= least_share * all &&
-                             shapes[i].length >= least_share * own;
+        const bool is_used =
+            loops[i].size() >= least_edges && own >= least_share * all && shapes[i].length >= least_share * own;
         if (is_used)
-            surface.loops.push_back({loops[i], shapes[i].length,
-                                     !is_outer[i] && (shapes[i].clear || shapes[i].length < hole_share * own)});
+            surface.loops.push_back(
+                {loops[i], shapes[i].length, !is_outer[i] && (shapes[i].clear || shapes[i].length < hole_share * own)});
         else
             ++surface.ignored_loops;
     }
@@ -102,6 +102,7 @@ CloudSurface cloud_surface(const Buffer<Vec3>& positions, const Frame& frame, Co
     surface.mesh = cocone(tets.tets, {}, context).mesh;
     const std::span<const u32> row_of = surface.mesh.vertex_columns.find(row_column)->values<u32>();
     surface.rows.assign(row_of.begin(), row_of.end());
+    surface.mesh.positions = gather(positions, surface.rows);
     surface.spacing = point_spacing(positions.span());
     surface.paper_edges = edges_between_boundary_points(surface.mesh);
     choose_loops(surface, half_edges::opposites(surface.mesh));

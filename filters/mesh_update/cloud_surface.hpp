@@ -2,8 +2,8 @@
 #pragma once
 /// The surface of a local cloud, and the closed loops of edges where it ends.
 ///
-/// The paper takes all edges of cocone's surface between two boundary points. The test for boundary points alone finds a
-/// third of a gently curved border, so no loop closes. Here an edge is a boundary edge if exactly one triangle of the
+/// The paper takes all edges of cocone's surface between two boundary points. The test for boundary points alone finds
+/// a third of a gently curved border, so no loop closes. Here an edge is a boundary edge if exactly one triangle of the
 /// surface has it.
 ///
 /// Source: Woo, Dey 2005, section 3.2.
@@ -35,8 +35,8 @@ struct CloudSurface {
     double spacing = 0;
 };
 
-/// The longest loop of every component of the surface is used, and its other loops if they have at least a tenth of that
-/// length: those are shown by the cloud, the rest are pinholes of its surface. Loops of fewer than 8 edges, and
+/// The longest loop of every component of the surface is used, and its other loops if they have at least a tenth of
+/// that length: those are shown by the cloud, the rest are pinholes of its surface. Loops of fewer than 8 edges, and
 /// components whose longest loop is shorter than a tenth of the cloud's longest, are ignored.
 ///
 /// Pre: finite positions. Throws Error for a cloud without a surface or without a boundary.

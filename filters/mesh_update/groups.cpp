@@ -12,10 +12,17 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::updating {
 
 namespace {
+
+/// Whether a triangle is lower over its edge than this share of it. Its direction is then that of noise.
+bool is_thin(const Vec3& start, const Vec3& end, const Vec3& apex) {
+    constexpr double least_height = 0.1;
+    return area_vector(start, end, apex).norm() < least_height * (end - start).squaredNorm();
+}
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
@@ -29,7 +36,8 @@ void find_components(const Model& model, Groups& groups) {
     std::vector<u32> facet_of(groups.count, 0);
     for (u32 f = static_cast<u32>(groups.of_facet.size()); f-- > 0;)
         if (groups.of_facet[f] != Groups::overlap) facet_of[static_cast<std::size_t>(groups.of_facet[f])] = f;
-    for (u32 g = 0; g < groups.count; ++g) groups.component[g] = lowest.emplace(sets.find(facet_of[g]), g).first->second;
+    for (u32 g = 0; g < groups.count; ++g)
+        groups.component[g] = lowest.emplace(sets.find(facet_of[g]), g).first->second;
 }
 
 }  // namespace
@@ -62,7 +70,8 @@ Groups segmentation(const Model& model, std::span<const u8> is_overlap, Context&
     std::vector<std::int32_t> order(groups.count), number(groups.count);
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](std::int32_t group) { return lowest[static_cast<std::size_t>(group)]; });
-    for (std::size_t i = 0; i < order.size(); ++i) number[static_cast<std::size_t>(order[i])] = static_cast<std::int32_t>(i);
+    for (std::size_t i = 0; i < order.size(); ++i)
+        number[static_cast<std::size_t>(order[i])] = static_cast<std::int32_t>(i);
     for (std::int32_t& group : groups.of_facet)
         if (group != Groups::overlap) group = number[static_cast<std::size_t>(group)];
     find_components(model, groups);
@@ -93,10 +102,12 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
     for (std::size_t i = 0; i < loops.size(); ++i) {
         context.check_cancelled();
         std::map<u32, Sum> at_loop;
+        std::size_t edges = 0;  // that have an angle
         for (const EdgeOverlap& edge : loops[i].edges) {
             if (!edge.foot) continue;
             const Vec3 start = position(edge.half_edge), end = position(half_edges::after(edge.half_edge)),
                        apex = position(half_edges::before(edge.half_edge)), middle = (start + end) / 2;
+            if (is_thin(start, end, apex)) continue;
             std::map<u32, Nearest> nearest;
             for (const u32 facet : edge.facets)
                 for (u32 h = 3 * facet; h < 3 * facet + 3; ++h) {
@@ -109,24 +120,21 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
                         if (!is_new) found->second = std::min(found->second, own);
                     });
                 }
+            edges += !nearest.empty();
             for (const auto& [group, best] : nearest) {
                 Sum& sum = at_loop[group];
-                sum.angles +=
-                    dihedral_angle(start, end, apex, *edge.foot, model.mesh.positions[best.vertex]);
+                sum.angles += dihedral_angle(start, end, apex, *edge.foot, model.mesh.positions[best.vertex]);
                 ++sum.edges;
             }
         }
-        const auto is_group = [&](const auto& entry) {
-            return static_cast<double>(entry.second.edges) >=
-                   least_group_share * static_cast<double>(loops[i].edges.size());
-        };
+        const double least = least_group_share * static_cast<double>(edges);
+        const auto is_group = [&](const auto& entry) { return static_cast<double>(entry.second.edges) >= least; };
         if (std::ranges::count_if(at_loop, is_group) < 2 && !result.undivided_loop) result.undivided_loop = i;
         for (const auto& [group, sum] : at_loop) {
             Sum& all = sums[group];
             all.angles += sum.angles;
             all.edges += sum.edges;
-            all.share = std::max(all.share,
-                                 static_cast<double>(sum.edges) / static_cast<double>(loops[i].edges.size()));
+            all.share = std::max(all.share, static_cast<double>(sum.edges) / static_cast<double>(edges));
         }
     }
     for (const auto& [group, sum] : sums)
@@ -144,9 +152,8 @@ Choice chosen_groups(const CloudAngles& angles, double gap) {
         else if (angle.mean < right_angle)
             choice.replaced.push_back(angle.group);
     if (groups.size() == 2) {
-        const auto& [low, high] = std::minmax(groups[0], groups[1], [](const GroupAngle& a, const GroupAngle& b) {
-            return a.mean < b.mean;
-        });
+        const auto& [low, high] =
+            std::minmax(groups[0], groups[1], [](const GroupAngle& a, const GroupAngle& b) { return a.mean < b.mean; });
         if (high.mean - low.mean > gap)
             choice.replaced.push_back(low.group);
         else

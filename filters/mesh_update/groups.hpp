@@ -4,9 +4,9 @@
 ///
 /// The boundary of a cloud lies on the model, so on one side of it the model continues the cloud, and on the other side
 /// it lies under or above the cloud. The angle at a boundary edge is the interior dihedral angle between the cloud's
-/// triangle and the triangle from the edge to the nearest vertex of a group: near 180° if the group continues the cloud,
-/// near 0 if the cloud replaces the group. As printed, equation 4 gives the opposite for a triangle that is folded back;
-/// the definition here agrees with figures 9 and 11.
+/// triangle and the triangle from the edge to the nearest vertex of a group: near 180° if the group continues the
+/// cloud, near 0 if the cloud replaces the group. As printed, equation 4 gives the opposite for a triangle that is
+/// folded back; the definition here agrees with figures 9 and 11.
 ///
 /// Source: Woo, Dey 2005, section 3.4, equations 4 and 5, and the angle condition.
 
@@ -30,9 +30,9 @@ struct Groups {
 /// Pre: one flag per facet. Cost: linear.
 Groups segmentation(const Model& model, std::span<const u8> is_overlap, Context& context);
 
-/// The interior dihedral angle at the edge from `start` to `end`, in radians: between the half-planes through `apex` and
-/// through `vertex`. `on_model` is the point of the model nearest to the middle of the edge: if the edge lies above or
-/// below the model, the direction to the vertex is still that along the model.
+/// The interior dihedral angle at the edge from `start` to `end`, in radians: between the half-planes through `apex`
+/// and through `vertex`. `on_model` is the point of the model nearest to the middle of the edge: if the edge lies above
+/// or below the model, the direction to the vertex is still that along the model.
 double dihedral_angle(const Vec3& start, const Vec3& end, const Vec3& apex, const Vec3& on_model, const Vec3& vertex);
 
 struct GroupAngle {
@@ -51,7 +51,8 @@ struct CloudAngles {
 };
 
 /// At every boundary edge, each group has at most one angle: that of its vertex on the overlap facets of this edge that
-/// is nearest to the edge's middle. Ties: the lowest vertex. Cost: linear in the overlap facets.
+/// is nearest to the edge's middle. Edges of thin triangles have none. Ties: the lowest vertex. Cost: linear in the
+/// overlap facets.
 CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSurface& cloud,
                         std::span<const LoopOverlap> loops, Context& context);
 
@@ -60,13 +61,14 @@ struct Choice {
     std::string ambiguity;  ///< why the angles do not decide; empty if they do
 };
 
-/// The groups that one cloud replaces. Of two groups, the one with the smaller mean angle; they must differ by more than
-/// `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°. Fragments do not count as
-/// groups here; those below 90° are replaced, too.
+/// The groups that one cloud replaces. Of two groups, the one with the smaller mean angle; they must differ by more
+/// than `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°. Fragments do not
+/// count as groups here; those below 90° are replaced, too.
 Choice chosen_groups(const CloudAngles& angles, double gap);
 
-/// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments, so
-/// without the replaced groups. Where that part touches itself in a vertex, the vertex counts once per fan. Cost: linear.
+/// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments,
+/// so without the replaced groups. Where that part touches itself in a vertex, the vertex counts once per fan. Cost:
+/// linear.
 long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced);
 /// V - E + F of the components of the cloud's surface that have a loop in use, with their other loops filled.
 long euler_of(const CloudSurface& cloud);

@@ -18,6 +18,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
@@ -48,8 +49,7 @@ struct CloudGroup {
 
 void require_parameters(const MeshUpdateParams& params) {
     const auto require = [](bool is_right, const char* name, const auto& value, const char* range) {
-        if (!is_right)
-            throw Error("{} must be {}; it is {}", name, range, value).hint("the defaults suit most scans");
+        if (!is_right) throw Error("{} must be {}; it is {}", name, range, value).hint("the defaults suit most scans");
     };
     require(params.max_distance.value() > 0, "max-distance", params.max_distance.value(), "above 0");
     require(params.trim >= 0 && std::isfinite(params.trim), "trim", params.trim, "0 or more");
@@ -92,11 +92,15 @@ public:
         reconstruct_clouds();
         context_.progress(0.2);
         context_.metric("boundary-seconds", watch_.lap(), Unit::seconds);
+        Array<u32> opposites = closed_opposites(given_);
         double least = groups_[0].surface.spacing;
         for (const CloudGroup& group : groups_) least = std::min(least, group.surface.spacing);
         Resampled resampled = updating::resampled(given_, params_.density * least, {}, context_);
         result_.resampled = resampled.added;
-        const Model model(resampled.mesh, context_);
+        if (resampled.added > 0) opposites = half_edges::opposites(resampled.mesh);
+        context_.check_cancelled();
+        const Model model(resampled.mesh, std::move(opposites), context_.threads());
+        refuse_intersections(model);
         context_.progress(0.3);
         context_.metric("model-seconds", watch_.lap(), Unit::seconds);
         find_overlaps(model);
@@ -134,6 +138,20 @@ private:
         for (const Triangle& t : given_.triangles)
             for (const u32 vertex : t) is_used[vertex] = true;
         result_.initial = static_cast<std::size_t>(std::ranges::count(is_used, true));
+    }
+
+    /// The local rebuild makes no triangle that intersects another; the rest of the model is not looked at.
+    void refuse_intersections(const Model& model) {
+        if (params_.rebuild == MeshUpdateParams::Rebuild::local) return;
+        const TriangleMesh& mesh = model.mesh;
+        const SelfIntersections found =
+            self_intersections(mesh.positions.span(), mesh.triangles.span(), model.tree, context_, 1);
+        if (found.count == 0) return;
+        const u32 facet = found.pairs[0][0];
+        throw Error("the model intersects itself: {} of triangles, the first at {}",
+                    count_text(found.count, "pair", "pairs"),
+                    position_text(mesh.positions[mesh.triangles[facet][0]], mesh.frame))
+            .hint("tight-cocone or poisson makes a model without intersections from its points");
     }
 
     std::string name_of(std::size_t cloud) const {
@@ -215,8 +233,8 @@ private:
     void doubt(std::string_view kind, const CloudGroup& group, const Vec3& position, const std::string& reason,
                std::string hint) {
         if (!result_.doubt.empty()) return;
-        result_.doubt = fmt::format("{}: {}; {}, at {}", kind, name_of(group), reason,
-                                    position_text(position, given_.frame));
+        result_.doubt =
+            fmt::format("{}: {}; {}, at {}", kind, name_of(group), reason, position_text(position, given_.frame));
         hint_ = std::move(hint);
     }
 
@@ -254,11 +272,12 @@ private:
         const double offset = median(overlap.offsets), allowed = largest_offset * group.surface.spacing;
         if (offset > allowed) {
             if (!loop.is_hole)
-                doubt("registration", group, overlap.farthest,
-                      fmt::format("the points of a loop are {:.4g} {} from the model on median, more than {:.4g}, half a "
-                                  "spacing of the cloud, the farthest {:.4g}",
-                                  offset, symbol(given_.frame.unit), allowed, overlap.farthest_distance),
-                      "align the cloud with the model by icp, or smooth its noise first");
+                doubt(
+                    "registration", group, overlap.farthest,
+                    fmt::format("the points of a loop are {:.4g} {} from the model on median, more than {:.4g}, half a "
+                                "spacing of the cloud, the farthest {:.4g}",
+                                offset, symbol(given_.frame.unit), allowed, overlap.farthest_distance),
+                    "align the cloud with the model by icp, or smooth its noise first");
             return false;
         }
         return true;
@@ -279,8 +298,8 @@ private:
         for (CloudGroup& group : groups_)
             for (std::size_t i = group.loops.size(); i-- > 0;) {
                 if (!group.surface.loops[i].is_hole) continue;
-                const CloudAngles angles = mean_angles(model, segmentation_, group.surface,
-                                                       std::span(group.loops).subspan(i, 1), context_);
+                const CloudAngles angles =
+                    mean_angles(model, segmentation_, group.surface, std::span(group.loops).subspan(i, 1), context_);
                 if (!angles.undivided_loop && chosen_groups(angles, params_.angle_gap.in_radians()).ambiguity.empty())
                     continue;
                 group.surface.loops.erase(group.surface.loops.begin() + static_cast<std::ptrdiff_t>(i));

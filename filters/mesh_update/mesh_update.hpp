@@ -42,7 +42,8 @@ struct MeshUpdateParams : TightCoconeParams {
     Overlap overlap = Overlap::projected;
     /// The mean angles of two groups must differ by more than this; 0 to 90 degrees.
     Angle angle_gap = Angle::degrees(20);
-    /// Vertices of overlap facets nearer to a point of the cloud are discarded; 0 or more, in local spacings of the cloud.
+    /// Vertices of overlap facets nearer to a point of the cloud are discarded; 0 or more, in local spacings of the
+    /// cloud.
     double trim = 0.3;
     /// Longer edges of the model are split; above 0, in spacings of the cloud.
     double density = 4;
@@ -51,9 +52,9 @@ struct MeshUpdateParams : TightCoconeParams {
 
 struct MeshUpdateResult {
     /// Closed and outward. Vertices of the model in their order, then points of the clouds; vertex columns `source`
-    /// (uint32; 0: the model, j: cloud j), `group` (int32; from 1, or -1 on overlap facets and for points of clouds) and
-    /// `replaced` (uint8; 1 only where OnDoubt::keep left what would have been discarded), and face column `updated` (1:
-    /// not a triangle of the model).
+    /// (uint32; 0: the model, j: cloud j), `group` (int32; from 1, or -1 on overlap facets and for points of clouds)
+    /// and `replaced` (uint8; 1 only where OnDoubt::keep left what would have been discarded), and face column
+    /// `updated` (1: not a triangle of the model).
     TriangleMesh mesh;
     /// The loops of the clouds, as outer boundaries and holes.
     FeatureGraph features;
@@ -74,8 +75,8 @@ struct MeshUpdateResult {
 ///        - registration: the median distance of a loop's points from their facets exceeds half a spacing of the cloud;
 ///        - no separation: a loop has one group on both sides;
 ///        - ambiguous: the angles do not decide, or clouds disagree.
-///       A hole in a cloud that hangs, or lies beside the model, is no loop: tight cocone closes it. One doubt stops the
-///       whole update.
+///       A hole in a cloud that hangs, or lies beside the model, is no loop: tight cocone closes it. One doubt stops
+///       the whole update.
 /// Post: every vertex of the model that is not discarded keeps its coordinates, bit for bit. With OnDoubt::keep and a
 ///       doubt, positions and triangles are those of the given model. The result does not depend on the number of
 ///       threads, nor on which way the clouds' or the model's triangles were found.

@@ -9,13 +9,17 @@
 
 namespace scanmill::updating {
 
+std::string position_text(const Vec3& position, const Frame& frame) {
+    const Vec3 world = frame.origin + position;
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", world.x(), world.y(), world.z());
+}
+
 namespace {
 
-Array<u32> closed_opposites(const TriangleMesh& mesh) {
-    Array<u32> opposite = half_edges::opposites(mesh);
+void require_no_boundary(const TriangleMesh& mesh, std::span<const u32> opposite) {
     const auto is_open = [](u32 other) { return other >= half_edges::no_half_edge; };
     const std::ptrdiff_t open = std::ranges::count_if(opposite, is_open);
-    if (open == 0) return opposite;
+    if (open == 0) return;
     const u32 first = static_cast<u32>(std::ranges::find_if(opposite, is_open) - opposite.begin());
     throw Error("the model is open: {}, the first at {}; only a closed model can be updated",
                 count_text(static_cast<std::uint64_t>(open), "boundary edge", "boundary edges"),
@@ -23,32 +27,39 @@ Array<u32> closed_opposites(const TriangleMesh& mesh) {
         .hint("fill-holes or repair closes the model; tight-cocone makes a closed one from its points");
 }
 
-}  // namespace
-
-std::string position_text(const Vec3& position, const Frame& frame) {
-    const Vec3 world = frame.origin + position;
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", world.x(), world.y(), world.z());
-}
-
-Model::Model(const TriangleMesh& given, Context& context)
-    : mesh(given),
-      opposite(closed_opposites(given)),
-      tree(given.positions.span(), given.triangles.span(), context.threads()) {
-    context.check_cancelled();
-    // A vertex with several fans has more corners than one walk around it visits.
+/// A vertex with several fans has more corners than one walk around it visits.
+void require_single_fans(const TriangleMesh& mesh, std::span<const u32> opposite) {
     std::vector<bool> is_seen(opposite.size()), has_fan(mesh.positions.size());
     for (u32 corner = 0; corner < opposite.size(); ++corner) {
         if (is_seen[corner]) continue;
-        const u32 vertex = start(corner);
+        const u32 vertex = half_edges::start(mesh, corner);
         if (has_fan[vertex])
             throw Error("the model is not a manifold: the triangles at vertex {} {} form several fans", vertex,
                         position_text(mesh.positions[vertex], mesh.frame))
                 .hint("repair separates them");
         has_fan[vertex] = true;
-        for_each_around(corner, [&](u32 h) { is_seen[h] = true; });
+        u32 h = corner;
+        do {
+            is_seen[h] = true;
+            h = opposite[half_edges::before(h)];
+        } while (h != corner);
     }
+}
+
+}  // namespace
+
+Array<u32> closed_opposites(const TriangleMesh& mesh) {
+    Array<u32> opposite = half_edges::opposites(mesh);
+    require_no_boundary(mesh, opposite);
+    require_single_fans(mesh, opposite);
     if (is_inside_out(mesh))
         throw Error("the model is inside out: its triangles face inwards").hint("repair turns them");
+    return opposite;
 }
+
+Model::Model(const TriangleMesh& given, Array<u32> opposites, unsigned threads)
+    : mesh(given),
+      opposite(std::move(opposites)),
+      tree(given.positions.span(), given.triangles.span(), threads) {}
 
 }  // namespace scanmill::updating

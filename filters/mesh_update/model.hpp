@@ -11,11 +11,17 @@
 
 namespace scanmill::updating {
 
-/// A closed mesh with its half-edges and a tree over its facets. Pre: the mesh outlives this object.
+/// half_edges::opposites(mesh). Throws Error for a mesh that is open, not a manifold or inside out, with the position
+/// of the first defect. Cost: linear.
+Array<u32> closed_opposites(const TriangleMesh& mesh);
+
+/// A closed mesh with its half-edges and a tree over its facets.
 struct Model {
-    /// Throws Error for a mesh that is open, not a manifold or inside out, with the number and the position of the first
-    /// defect. Cost: O(F log F); about 130 bytes per triangle.
-    Model(const TriangleMesh& given, Context& context);
+    /// Pre: `opposites` are closed_opposites(given), and the mesh outlives this object. Cost: O(F log F); about 130
+    /// bytes per triangle.
+    Model(const TriangleMesh& given, Array<u32> opposites, unsigned threads);
+    Model(const TriangleMesh& given, const Context& context)
+        : Model(given, closed_opposites(given), context.threads()) {}
     Model(const Model&) = delete;
 
     std::array<Vec3, 3> corners(u32 facet) const {

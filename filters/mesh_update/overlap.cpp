@@ -13,8 +13,8 @@ namespace scanmill::updating {
 
 namespace {
 
-/// An edge is halved this often at most. Facets that are then not adjacent meet in a vertex, or lie on two sheets of the
-/// model; a walk joins them.
+/// An edge is halved this often at most. Facets that are then not adjacent meet in a vertex, or lie on two sheets of
+/// the model; a walk joins them.
 constexpr int most_halvings = 12;
 /// Facets that a walk visits at most. Two facets under one boundary edge are near each other, or the model has two
 /// sheets there.
@@ -110,8 +110,8 @@ Projection project(const Vec3& point, const std::array<Vec3, 3>& facet) {
     const Vec3 normal = area.normalized();
     const double distance = (point - b).dot(normal);
     const Vec3 foot = point - distance * normal;
-    const double least = std::min({area_vector(foot, b, c).dot(area), area_vector(a, foot, c).dot(area),
-                                   area_vector(a, b, foot).dot(area)});
+    const double least = std::min(
+        {area_vector(foot, b, c).dot(area), area_vector(a, foot, c).dot(area), area_vector(a, b, foot).dot(area)});
     return {distance, foot, least >= -tolerance * area.squaredNorm()};
 }
 
@@ -172,15 +172,26 @@ void add_candidates(const Model& model, const CloudSurface& cloud, const CloudLo
     const TriangleTree vertices = tree_of_points(model.mesh.positions.span(), context.threads());
     std::vector<u32> corner_at(model.mesh.positions.size(), half_edges::boundary);
     for (u32 h = static_cast<u32>(model.opposite.size()); h-- > 0;) corner_at[model.start(h)] = h;
-    std::vector<u32>& facets = overlap.facets;
-    for (const u32 h : loop.half_edges) {
+    std::vector<u32> before;  // of the edge's start, once its end is looked at
+    const std::size_t count = loop.half_edges.size();
+    for (std::size_t k = 0; k <= count; ++k) {
+        const u32 h = loop.half_edges[k % count];
+        std::vector<u32> around;
         const Vec3& point = cloud.mesh.positions[half_edges::start(cloud.mesh, h)];
         const NearestTriangle nearest = vertices.nearest(point);
-        if (nearest.squared_distance > max_distance * max_distance) continue;
-        if (corner_at[nearest.triangle] == half_edges::boundary) continue;
-        model.for_each_around(corner_at[nearest.triangle], [&](u32 around) { facets.push_back(around / 3); });
+        if (nearest.squared_distance <= max_distance * max_distance &&
+            corner_at[nearest.triangle] != half_edges::boundary)
+            model.for_each_around(corner_at[nearest.triangle], [&](u32 corner) { around.push_back(corner / 3); });
+        if (k > 0) {
+            std::vector<u32>& facets = overlap.edges[k - 1].facets;
+            facets.insert(facets.end(), before.begin(), before.end());
+            facets.insert(facets.end(), around.begin(), around.end());
+            sort_unique(facets);
+            overlap.facets.insert(overlap.facets.end(), facets.begin(), facets.end());
+        }
+        before = std::move(around);
     }
-    sort_unique(facets);
+    sort_unique(overlap.facets);
 }
 
 }  // namespace scanmill::updating

@@ -2,8 +2,8 @@
 #pragma once
 /// The overlap facets: facets of the model under the boundary of a cloud. They form a closed barrier under every loop.
 ///
-/// The paper marks facets under boundary points only. A cloud that is sparser than the model leaves gaps between them, so
-/// here every boundary edge is followed on the model, from facet to facet across edges.
+/// The paper marks facets under boundary points only. A cloud that is sparser than the model leaves gaps between them,
+/// so here every boundary edge is followed on the model, from facet to facet across edges.
 ///
 /// Source: Woo, Dey 2005, section 3.3, equations 1 to 3.
 
@@ -21,8 +21,8 @@ struct Projection {
     Vec3 foot;  ///< equation 3
     bool is_inside;  ///< whether the foot is in the facet, border included
 };
-/// Pre: the facet has an area. Seen from a foot in the facet, the angles between its corners add up to 2π; this is tested
-/// with barycentric coordinates, to 1e-9 of them.
+/// Pre: the facet has an area. Seen from a foot in the facet, the angles between its corners add up to 2π; this is
+/// tested with barycentric coordinates, to 1e-9 of them.
 Projection project(const Vec3& point, const std::array<Vec3, 3>& facet);
 
 /// A boundary edge of a cloud on the model.

@@ -26,9 +26,9 @@ struct Rectangle {
     double x0, y0, x1, y1;
 };
 
-/// Points of a grid with this spacing on the plane z = `level` around `step`, `border` wide; on the walls of `step` from
-/// `level` to `level + height`; and on its top or bottom at `level + height`. A pad for a positive height, a pocket for
-/// a negative one. The sides of the rectangle and the height are multiples of the spacing.
+/// Points of a grid with this spacing on the plane z = `level` around `step`, `border` wide; on the walls of `step`
+/// from `level` to `level + height`; and on its top or bottom at `level + height`. A pad for a positive height, a
+/// pocket for a negative one. The sides of the rectangle and the height are multiples of the spacing.
 inline std::shared_ptr<const PointCloud> step_cloud(const Rectangle& step, double level, double height, double border,
                                                     double spacing) {
     Array<Vec3> points;

@@ -51,7 +51,8 @@ inline std::shared_ptr<const PointCloud> bump_cloud(const Bump& bump, const Samp
     while (misses < 4000) {
         const bool large = random.uniform() < 0.5;
         const Vec3 p = large ? Vec3(bump.R * on_unit_sphere(random)) : Vec3(top + bump.r * on_unit_sphere(random));
-        if (large ? !bump.is_on_large(p) || (p - top).norm() > bump.r + sampling.overlap : !bump.is_on_small(p)) continue;
+        if (large ? !bump.is_on_large(p) || (p - top).norm() > bump.r + sampling.overlap : !bump.is_on_small(p))
+            continue;
         bool is_free = true;
         for (const Vec3& q : points) is_free = is_free && (p - q).norm() >= sampling.spacing;
         if (!is_free) {
