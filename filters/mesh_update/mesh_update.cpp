@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh_update/changes.hpp"
 #include "mesh_update/replacement.hpp"
 #include "mesh_update/resample.hpp"
 #include "mesh_update/updated_mesh.hpp"
@@ -425,7 +426,40 @@ private:
         const Difference changed = difference(model, rebuilt);
         result_.mesh = updated_mesh(model, clouds_, all, segmentation_, rebuilt, changed.is_new, context_);
         result_.updated = true;
+        list_changes(model, rebuilt, changed);
         doubt_result(model);
+    }
+
+    void list_changes(const Model& model, const Rebuilt& rebuilt, const Difference& difference) {
+        const TriangleMesh& mesh = result_.mesh;
+        const std::size_t model_vertices = model.mesh.positions.size();
+        std::vector<Triangle> before, after;
+        for (const u32 facet : difference.old_facets) before.push_back(model.mesh.triangles[facet]);
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+            if (difference.is_new[i] == 1) after.push_back(mesh.triangles[i]);
+        std::vector<u32> common;
+        for (const u32 row : rebuilt.rows) common.push_back(row < model_vertices ? row : no_common_vertex);
+        u32 hint = NearestTriangle::none;
+        for (const Change& change : updating::changes({model.mesh.positions.span(), before},
+                                                      {mesh.positions.span(), after}, common, context_)) {
+            MeshChange listed{0, change.volume_added, change.volume_removed, 0};
+            for (const u32 triangle : change.new_triangles) {
+                bool has_points = false;
+                for (const u32 vertex : after[triangle]) {
+                    if (common[vertex] != no_common_vertex) continue;
+                    has_points = true;
+                    const NearestTriangle nearest = model.tree.nearest(mesh.positions[vertex], hint);
+                    hint = nearest.slot;
+                    listed.deviation = std::max(listed.deviation, nearest.squared_distance);
+                }
+                if (has_points)
+                    listed.area += area_vector(mesh.positions.span(), after[triangle]).norm() / 2;
+                else
+                    ++result_.remeshed;
+            }
+            listed.deviation = std::sqrt(listed.deviation);
+            if (listed.area > 0) result_.changes.push_back(listed);
+        }
     }
 
     /// Doubts a result that is not the rest of the model joined with the surfaces of the clouds.
@@ -478,6 +512,14 @@ private:
             for (const GroupAngle& angle : group.angles.groups)
                 context_.metric(numbered("mean-angle", ++angles), angle.mean, Unit::angle);
         }
+        for (std::size_t i = 0; i < result_.changes.size(); ++i) {
+            const MeshChange& change = result_.changes[i];
+            context_.metric(numbered("area", i + 1), change.area, Unit::area);
+            context_.metric(numbered("volume-added", i + 1), change.volume_added, Unit::volume);
+            context_.metric(numbered("volume-removed", i + 1), change.volume_removed, Unit::volume);
+            context_.metric(numbered("deviation", i + 1), change.deviation, Unit::length);
+        }
+        if (result_.updated) count("remeshed", result_.remeshed);
         count("loops", loops);
         count("ignored-loops", ignored);
         count("boundary-edges", edges);

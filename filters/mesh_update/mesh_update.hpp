@@ -50,6 +50,14 @@ struct MeshUpdateParams : TightCoconeParams {
     OnDoubt on_doubt = OnDoubt::fail;
 };
 
+/// A connected part of the mesh that the clouds changed.
+struct MeshChange {
+    double area = 0;  ///< of the triangles with a point of a cloud
+    double volume_added = 0;  ///< inside the result and outside the model; see changes.hpp for the error
+    double volume_removed = 0;  ///< inside the model and outside the result
+    double deviation = 0;  ///< largest distance of a point of the clouds in it from the model
+};
+
 struct MeshUpdateResult {
     /// Closed and outward. Vertices of the model in their order, then points of the clouds; vertex columns `source`
     /// (uint32; 0: the model, j: cloud j), `group` (int32; from 1, or -1 on overlap facets and for points of clouds)
@@ -65,6 +73,8 @@ struct MeshUpdateResult {
     std::size_t discarded = 0, kept = 0;  ///< initial + resampled = discarded + kept
     std::size_t unused = 0;  ///< kept + added - vertices of the result
     std::size_t groups = 0, replaced = 0;
+    std::vector<MeshChange> changes;  ///< by their lowest triangle of the model
+    std::size_t remeshed = 0;  ///< new triangles without a point of a cloud: vertices of the model, joined anew
     std::string doubt;  ///< why the model was kept; empty if updated
 };
 

@@ -117,6 +117,15 @@ TEST_P(SteppedBlock, HasTheVolumeOfTheUnionOrTheDifference) {
     EXPECT_LT(metric(context, "mean-angle@2"), 20 * std::numbers::pi / 180);
     EXPECT_NEAR(signed_volume(result.mesh), 48000 + 400 * GetParam().height, updated_area(result.mesh) / 2);
     EXPECT_LE(result.unused, 1);
+    const double added = std::max(GetParam().height, 0.0), removed = std::max(-GetParam().height, 0.0);
+    ASSERT_EQ(result.changes.size(), 1);
+    const MeshChange& change = result.changes[0];
+    EXPECT_NEAR(change.volume_added, 400 * added, change.area / 2);
+    EXPECT_NEAR(change.volume_removed, 400 * removed, change.area / 2);
+    EXPECT_NEAR(change.deviation, added + removed, 1e-9);
+    // Triangles between the cloud and the model are as wide as the model's edges, at most 4.
+    EXPECT_GT(change.area, 28 * 28 + 80 * (added + removed) - 4 * 28);
+    EXPECT_LT(change.area, 36 * 36 + 80 * (added + removed));
     // Outside of the cloud, the top is whole: the group of the block's corners is kept.
     const std::set<Position> found = positions(result.mesh);
     for (const Vec3& corner : block().positions) EXPECT_TRUE(found.contains(key(corner)));
@@ -201,6 +210,8 @@ TEST(MeshUpdate, TwoCloudsAtOnce_LikeOneAfterTheOther) {
     const MeshUpdateResult first = updated(block(), {pad}, with_distance(3), first_context);
     const MeshUpdateResult second = updated(first.mesh, {pocket}, with_distance(3), second_context);
     EXPECT_EQ(both.replaced, 2);
+    ASSERT_EQ(both.changes.size(), 2);
+    EXPECT_NEAR(both.changes[0].deviation + both.changes[1].deviation, 11, 1e-9);
     EXPECT_EQ(both.groups, 3);
     EXPECT_EQ(positions(both.mesh), positions(second.mesh));
     EXPECT_EQ(triangles(both.mesh), triangles(second.mesh));
