@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t lines_per_triangle = 64, least_lines = 64 * 64, most_lines = 512 * 512;
 /// Old and new triangles in one plane enclose a volume by rounding: at most this share of area × diameter.
 constexpr double rounding = 1e-15;
-/// Rows of lines that are measured together.
-constexpr std::size_t band_rows = 8;
+/// Lines that one thread measures at a time, at least; fewer would take less time than starting a task.
+constexpr std::size_t band_lines = 1 << 13;
 
 /// The vertices of the changed triangles, numbered without gaps. Common vertices have one number.
 class Vertices {
@@ -162,10 +162,11 @@ public:
         us_ = centres(box.low.x(), width, columns);
         vs_ = centres(box.low.y(), height, std::max(1.0, std::floor(lines / columns)));
         cell_ = width / static_cast<double>(us_.size()) * (height / static_cast<double>(vs_.size()));
+        band_rows_ = (band_lines + us_.size() - 1) / us_.size();
     }
 
     Volumes volumes(Context& context) const {
-        const std::size_t bands = (vs_.size() + band_rows - 1) / band_rows;
+        const std::size_t bands = (vs_.size() + band_rows_ - 1) / band_rows_;
         const Lists lists = triangles_by_band(bands);
         std::vector<Volumes> parts(bands);
         for_each_chunk(context.threads(), bands, 1, [&](std::size_t band, std::size_t) {
@@ -220,7 +221,7 @@ private:
         const auto for_each_band = [&](auto&& action) {
             for (u32 row = 0; row < cycle_.size(); ++row) {
                 const auto [first, last] = rows_of(cycle_[row]);
-                for (std::size_t band = first / band_rows; band * band_rows < last; ++band) action(band, row);
+                for (std::size_t band = first / band_rows_; band * band_rows_ < last; ++band) action(band, row);
             }
         };
         for_each_band([&](std::size_t band, u32) { ++lists.begin[band + 2]; });
@@ -254,7 +255,7 @@ private:
     }
 
     Volumes band_volumes(std::size_t band, std::span<const u32> triangles) const {
-        const std::size_t first_row = band * band_rows, last_row = std::min(first_row + band_rows, vs_.size());
+        const std::size_t first_row = band * band_rows_, last_row = std::min(first_row + band_rows_, vs_.size());
         const auto for_each = [&](auto&& action) {
             for (const u32 triangle : triangles) {
                 const auto [first, last] = rows_of(cycle_[triangle]);
@@ -288,6 +289,7 @@ private:
     std::span<const Corners> cycle_;
     std::vector<double> us_, vs_;  ///< coordinates of the lines
     double cell_ = 0;  ///< area per line
+    std::size_t band_rows_ = 1;  ///< rows of lines that are measured together
 };
 
 /// Changes both volumes by the same share, so that their difference is `difference`. Where nothing is removed, or

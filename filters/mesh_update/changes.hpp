@@ -55,7 +55,7 @@ struct Change {
 ///         512 × 512   slices as thin as a thousandth of the change's size   2e-5    3e-4
 ///
 ///       The result does not depend on the number of threads.
-/// Cost: O(k log k) for k triangles, and the lines: below 1 ms for 64 × 64, about 50 ms for 512 × 512. Nothing depends
+/// Cost: O(k log k) for k triangles, and the lines: below 1 ms for 64 × 64, about 20 ms for 512 × 512. Nothing depends
 ///       on the unchanged part of the meshes.
 std::vector<Change> changes(const ChangedTriangles& before, const ChangedTriangles& after, std::span<const u32> common,
                             Context& context);
