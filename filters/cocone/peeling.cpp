@@ -114,7 +114,10 @@ public:
                 if (good_[t[k]] == 1 && good_[t[(k + 1) % 3]] == 1) components_.unite(t[k], t[(k + 1) % 3]);
     }
 
-    Peeling run() {
+    Peeling run(std::span<const Side> inside) {
+        for (const Side& side : inside)
+            for (int k = 0; k < 4; ++k)
+                if (k != side.corner && is_good(side.cell, k)) decide(side.cell, k, !is_outer(side.cell, k));
         // The good points of the hull come first: the space beyond the hull is outside.
         for_each_hull_facet([&](const Side& side) {
             const bool on_surface = surface_.facets.contains(side);
@@ -228,8 +231,8 @@ private:
 }  // namespace
 
 Peeling peel(const Diagram& diagram, const Surface& surface, const SurfaceMesh& mesh, std::span<const u8> flat,
-             Context& context) {
-    return Peel(diagram, surface, mesh, flat, context).run();
+             Context& context, std::span<const Side> inside) {
+    return Peel(diagram, surface, mesh, flat, context).run(inside);
 }
 
 }  // namespace scanmill::cocones

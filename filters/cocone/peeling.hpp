@@ -21,9 +21,11 @@ struct Peeling {
 /// less than 0 at a point that is not flat).
 ///
 /// Good points that triangles connect are labelled together, by the first cell at one of them that the outside reaches:
-/// this cell is outside. If the good points of a cell disagree, most of them decide, and on a tie the cell is inside.
-/// Face-connected parts of the solid without a good point are dropped, unless no point is good. Cost: linear.
+/// this cell is outside. Where the inside is known from elsewhere, `inside` lists cells of it, each with its corner
+/// opposite to a facet of the surface; then the first of them at the component decides. If the good points of a cell
+/// disagree, most of them decide, and on a tie the cell is inside. Face-connected parts of the solid without a good
+/// point are dropped, unless no point is good. Cost: linear.
 Peeling peel(const Diagram& diagram, const Surface& surface, const SurfaceMesh& mesh, std::span<const u8> flat,
-             Context& context);
+             Context& context, std::span<const Side> inside = {});
 
 }  // namespace scanmill::cocones

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "mesh_update/changes.hpp"
+#include "mesh_update/local_rebuild.hpp"
 #include "mesh_update/replacement.hpp"
 #include "mesh_update/resample.hpp"
 #include "mesh_update/updated_mesh.hpp"
@@ -17,9 +18,9 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/distance/swept_distance.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
@@ -37,6 +38,10 @@ constexpr double largest_offset = 0.5;
 
 /// Above this share of unused points, compared with the points of the clouds, a result is doubtful.
 constexpr double most_unused = 0.02;
+
+/// The local rebuild splits long edges of facets this near to a border, in lengths of the longest edge that stays: the
+/// collar and the guard are three such edges wide each.
+constexpr double resampling_reach = 9;
 
 /// Clouds that are updated as one: usually a single cloud.
 struct CloudGroup {
@@ -96,7 +101,7 @@ public:
         Array<u32> opposites = closed_opposites(given_);
         double least = groups_[0].surface.spacing;
         for (const CloudGroup& group : groups_) least = std::min(least, group.surface.spacing);
-        Resampled resampled = updating::resampled(given_, params_.density * least, {}, context_);
+        const Resampled resampled = resample(params_.density * least);
         result_.resampled = resampled.added;
         if (resampled.added > 0) opposites = half_edges::opposites(resampled.mesh);
         context_.check_cancelled();
@@ -139,6 +144,20 @@ private:
         for (const Triangle& t : given_.triangles)
             for (const u32 vertex : t) is_used[vertex] = true;
         result_.initial = static_cast<std::size_t>(std::ranges::count(is_used, true));
+    }
+
+    Resampled resample(double longest) {
+        if (params_.rebuild == MeshUpdateParams::Rebuild::whole) return resampled(given_, longest, {}, context_);
+        Array<Vec3> borders;
+        for (const CloudGroup& group : groups_)
+            for (const CloudLoop& loop : group.surface.loops)
+                for (const u32 h : loop.half_edges)
+                    borders.push_back(group.surface.mesh.positions[half_edges::start(group.surface.mesh, h)]);
+        const TriangleTree tree = tree_of_points(borders, context_.threads());
+        const auto is_near = [&](const std::array<Vec3, 3>& corners) {
+            return is_nearer(tree, corners, resampling_reach * longest);
+        };
+        return resampled(given_, longest, is_near, context_);
     }
 
     /// The local rebuild makes no triangle that intersects another; the rest of the model is not looked at.
@@ -409,25 +428,101 @@ private:
         std::vector<bool> is_used(model_vertices);
         for (const Triangle& t : model.mesh.triangles)
             for (const u32 vertex : t) is_used[vertex] = true;
-        Array<u32> rows;
-        for (u32 vertex = 0; vertex < model_vertices; ++vertex) {
-            if (!is_used[vertex]) continue;
-            if (discarded_[vertex] == 1)
-                ++result_.discarded;
-            else
-                rows.push_back(vertex);
-        }
+        Array<u32> rows, discarded;
+        for (u32 vertex = 0; vertex < model_vertices; ++vertex)
+            if (is_used[vertex]) (discarded_[vertex] == 1 ? discarded : rows).push_back(vertex);
+        result_.discarded = discarded.size();
         result_.kept = rows.size();
-        for (u32 i = 0; i < positions_.size(); ++i) rows.push_back(static_cast<u32>(model_vertices + i));
+        const bool is_local = params_.rebuild == MeshUpdateParams::Rebuild::local;
         Array<Vec3> all(model.mesh.positions.begin(), model.mesh.positions.end());
         all.insert(all.end(), positions_.begin(), positions_.end());
-        const Rebuilt rebuilt = rebuild_whole(all, given_.frame, rows, params_, context_);
+        for (u32 i = 0; i < positions_.size(); ++i) rows.push_back(static_cast<u32>(model_vertices + i));
+        const Rebuilt rebuilt =
+            is_local ? rebuild_local(model, rows, discarded)
+                     : rebuild_whole(all, given_.frame, rows, model.mesh.triangles.size(), params_, context_);
         result_.unused = result_.kept + result_.added - rebuilt.rows.size();
-        const Difference changed = difference(model, rebuilt);
+        const Difference changed = difference(model.mesh, rebuilt);
         result_.mesh = updated_mesh(model, clouds_, all, segmentation_, rebuilt, changed.is_new, context_);
         result_.updated = true;
         list_changes(model, rebuilt, changed);
         doubt_result(model);
+    }
+
+    /// `rows`: of kept vertices and points, ascending.
+    Rebuilt rebuild_local(const Model& model, std::span<const u32> rows, std::span<const u32> discarded) {
+        const u32 model_vertices = static_cast<u32>(model.mesh.positions.size());
+        const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree, positions_,
+                                                  local_changes(model), discarded, params_, context_);
+        std::vector<u32> number(model_vertices + positions_.size(), half_edges::boundary);
+        std::vector<bool> is_gone(number.size());
+        for (const u32 vertex : part.dropped) is_gone[vertex] = true;
+        std::vector<bool> is_point_used(positions_.size());
+        for (const Triangle& t : part.triangles)
+            for (const u32 vertex : t)
+                if (vertex >= model_vertices) is_point_used[vertex - model_vertices] = true;
+        Rebuilt rebuilt;
+        for (const u32 row : rows) {
+            if (is_gone[row] || (row >= model_vertices && !is_point_used[row - model_vertices])) continue;
+            number[row] = static_cast<u32>(rebuilt.rows.size());
+            rebuilt.rows.push_back(row);
+        }
+        const auto add = [&](const Triangle& t) {
+            rebuilt.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+        };
+        rebuilt.replaced.assign(part.replaced.begin(), part.replaced.end());
+        rebuilt.triangles.reserve(model.mesh.triangles.size() - part.replaced.size() + part.triangles.size());
+        auto replaced = part.replaced.begin();
+        for (u32 facet = 0; facet < model.mesh.triangles.size(); ++facet)
+            if (replaced != part.replaced.end() && *replaced == facet)
+                ++replaced;
+            else
+                add(model.mesh.triangles[facet]);
+        rebuilt.fixed = rebuilt.triangles.size();
+        for (const Triangle& t : part.triangles) add(t);
+        return rebuilt;
+    }
+
+    /// The facets that go, divided among the clouds: connected facets go together, and so do all those of a cloud.
+    std::vector<LocalChange> local_changes(const Model& model) const {
+        std::vector<u32> removed;
+        std::vector<u8> is_removed(model.mesh.triangles.size(), u8(0));
+        for (u32 facet = 0; facet < is_removed.size(); ++facet) {
+            const Triangle& t = model.mesh.triangles[facet];
+            if (segmentation_.of_facet[facet] != Groups::overlap &&
+                discarded_[t[0]] + discarded_[t[1]] + discarded_[t[2]] == 0)
+                continue;
+            is_removed[facet] = 1;
+            removed.push_back(facet);
+        }
+        DisjointSets facets(removed.size()), clouds(groups_.size());
+        const auto index_of = [&](u32 facet) {
+            return static_cast<u32>(std::ranges::lower_bound(removed, facet) - removed.begin());
+        };
+        for (u32 i = 0; i < removed.size(); ++i)
+            for (u32 h = 3 * removed[i]; h < 3 * removed[i] + 3; ++h)
+                if (const u32 beside = model.opposite[h] / 3; is_removed[beside] == 1)
+                    facets.unite(i, index_of(beside));
+        std::vector<u32> cloud_of(removed.size(), half_edges::boundary);
+        for (u32 g = 0; g < groups_.size(); ++g)
+            for (const LoopOverlap& loop : groups_[g].loops)
+                for (const u32 facet : loop.facets) {
+                    u32& cloud = cloud_of[facets.find(index_of(facet))];
+                    if (cloud == half_edges::boundary)
+                        cloud = g;
+                    else
+                        clouds.unite(cloud, g);
+                }
+        std::vector<LocalChange> changes(groups_.size());
+        for (u32 i = 0; i < removed.size(); ++i)
+            if (const u32 cloud = cloud_of[facets.find(i)]; cloud != half_edges::boundary)
+                changes[clouds.find(cloud)].removed.push_back(removed[i]);
+        for (u32 g = 0; g < groups_.size(); ++g) {
+            LocalChange& change = changes[clouds.find(g)];
+            change.points.insert(change.points.end(), groups_[g].rows.begin(), groups_[g].rows.end());
+            change.spacing = std::max(change.spacing, groups_[g].surface.spacing);
+        }
+        std::erase_if(changes, [](const LocalChange& change) { return change.points.empty(); });
+        return changes;
     }
 
     void list_changes(const Model& model, const Rebuilt& rebuilt, const Difference& difference) {
@@ -471,7 +566,9 @@ private:
                            "mesh");
         long expected = euler_of_rest(model, segmentation_, is_replaced_);
         for (const CloudGroup& group : groups_) expected += euler_of(group.surface);
-        const long found = topology(result_.mesh).euler;
+        // Every edge of a closed mesh has two triangles.
+        const long found =
+            static_cast<long>(result_.mesh.positions.size()) - static_cast<long>(result_.mesh.triangles.size()) / 2;
         if (found != expected)
             context_.doubt(fmt::format("the result has the Euler characteristic {}; the rest of the model and the "
                                        "surfaces of the clouds give {}",

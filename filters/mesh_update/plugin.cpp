@@ -69,8 +69,8 @@ SCANMILL_FILTER() {
         .metric("volume-removed", Unit::volume, "Volume inside the model and outside the result, of each change.",
                 numbered, headline)
         .metric("deviation", Unit::length, "Largest distance of a new point from the model, of each change.", numbered)
-        .metric("remeshed", Unit::count, "New triangles without a point of a cloud: vertices of the model, joined anew.",
-                smaller_is_better)
+        .metric("remeshed", Unit::count,
+                "New triangles without a point of a cloud: vertices of the model, joined anew.", smaller_is_better)
         .metric("loops", Unit::count, "Border loops of the clouds that were used.")
         .metric("ignored-loops", Unit::count, "Border loops that are small or do not lie on the model.")
         .metric("boundary-edges", Unit::count, "Edges of the clouds' surfaces in one triangle.")

@@ -10,22 +10,10 @@ namespace scanmill::updating {
 
 namespace {
 
-/// By vertex, a half-edge that starts there; half_edges::boundary for vertices without triangles.
-Array<u32> half_edge_at(const Model& model) {
-    Array<u32> found(model.mesh.positions.size(), half_edges::boundary);
-    for (u32 h = 0; h < model.opposite.size(); ++h) found[model.start(h)] = h;
-    return found;
-}
-
-/// The facet with these corners in this order, or half_edges::boundary.
-u32 facet_with(const Model& model, std::span<const u32> half_edge_at, const Triangle& corners) {
-    u32 facet = half_edges::boundary;
-    if (half_edge_at[corners[0]] == half_edges::boundary) return facet;
-    model.for_each_around(half_edge_at[corners[0]], [&](u32 h) {
-        if (model.start(half_edges::after(h)) == corners[1] && model.start(half_edges::before(h)) == corners[2])
-            facet = h / 3;
-    });
-    return facet;
+/// The triangle from its lowest corner on.
+Triangle from_lowest(Triangle corners) {
+    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    return corners;
 }
 
 /// By vertex of the model: its group from 1, or Groups::overlap for vertices of overlap facets and without facets.
@@ -64,22 +52,31 @@ Array<Edge> kept_sharp_edges(const TriangleMesh& model, const TriangleMesh& resu
 
 }  // namespace
 
-Difference difference(const Model& model, const Rebuilt& rebuilt) {
-    const Array<u32> at = half_edge_at(model);
-    std::vector<bool> is_found(model.mesh.triangles.size());
+Difference difference(const TriangleMesh& model, const Rebuilt& rebuilt) {
+    struct Facet {
+        Triangle corners;
+        u32 row;
+        auto operator<=>(const Facet&) const = default;
+    };
+    std::vector<Facet> old;
+    for (const u32 row : rebuilt.replaced) old.push_back({from_lowest(model.triangles[row]), row});
+    std::ranges::sort(old);
+    std::vector<bool> is_found(old.size());
     Difference result;
-    result.is_new.assign(rebuilt.triangles.size(), u8(1));
-    for (std::size_t i = 0; i < rebuilt.triangles.size(); ++i) {
+    result.is_new.assign(rebuilt.triangles.size(), u8(0));
+    for (std::size_t i = rebuilt.fixed; i < rebuilt.triangles.size(); ++i) {
         Triangle corners = rebuilt.triangles[i];
         for (u32& corner : corners) corner = rebuilt.rows[corner];
-        if (std::ranges::max(corners) >= at.size()) continue;
-        const u32 facet = facet_with(model, at, corners);
-        if (facet == half_edges::boundary) continue;
-        result.is_new[i] = 0;
-        is_found[facet] = true;
+        corners = from_lowest(corners);
+        const auto found = std::ranges::lower_bound(old, corners, {}, &Facet::corners);
+        if (found != old.end() && found->corners == corners)
+            is_found[static_cast<std::size_t>(found - old.begin())] = true;
+        else
+            result.is_new[i] = 1;
     }
-    for (u32 facet = 0; facet < is_found.size(); ++facet)
-        if (!is_found[facet]) result.old_facets.push_back(facet);
+    for (std::size_t i = 0; i < old.size(); ++i)
+        if (!is_found[i]) result.old_facets.push_back(old[i].row);
+    std::ranges::sort(result.old_facets);
     return result;
 }
 

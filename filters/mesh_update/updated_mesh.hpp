@@ -15,8 +15,8 @@ struct Difference {
     Array<u32> old_facets;  ///< facets of the model that are not triangles of the new mesh, ascending
 };
 
-/// Rows of `rebuilt` below the number of the model's vertices are those vertices. Cost: linear.
-Difference difference(const Model& model, const Rebuilt& rebuilt);
+/// Rows of `rebuilt` below the number of the model's vertices are those vertices. Cost: a sort of the replaced facets.
+Difference difference(const TriangleMesh& model, const Rebuilt& rebuilt);
 
 /// `rebuilt` with the columns that MeshUpdateResult describes, after those of the model's vertices and of the clouds,
 /// which are joined as merge() joins them. Sharp edges of the model that are edges of the result stay sharp; face

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_update/whole_rebuild.hpp"
 
+#include <numeric>
+
 #include "delaunay/delaunay.hpp"
 
 namespace scanmill::updating {
@@ -21,7 +23,7 @@ ContextOptions nested_options(const Context& outer) {
 NestedContext::NestedContext(const Context& outer) : Context(nested_options(outer)) {}
 
 Rebuilt rebuild_whole(std::span<const Vec3> positions, const Frame& frame, std::span<const u32> rows,
-                      const TightCoconeParams& params, Context& context) {
+                      std::size_t facets, const TightCoconeParams& params, Context& context) {
     PointCloud points;
     points.frame = frame;
     Array<Vec3> chosen;
@@ -38,6 +40,8 @@ Rebuilt rebuild_whole(std::span<const Vec3> positions, const Frame& frame, std::
     const std::span<const u32> row_of = solid.mesh.vertex_columns.find(row_column)->values<u32>();
     result.rows.assign(row_of.begin(), row_of.end());
     result.triangles.assign(solid.mesh.triangles.begin(), solid.mesh.triangles.end());
+    result.replaced.resize(facets);
+    std::iota(result.replaced.begin(), result.replaced.end(), u32(0));
     return result;
 }
 

@@ -17,6 +17,7 @@
 #include "icp/icp.hpp"
 #include "inspect/inspect.hpp"
 #include "measure/measure.hpp"
+#include "mesh_update/mesh_update.hpp"
 #include "normals/normals.hpp"
 #include "outlier_removal/outlier_removal.hpp"
 #include "poisson/poisson.hpp"
@@ -24,6 +25,7 @@
 #include "render/render.hpp"
 #include "repair/repair.hpp"
 #include "scanmill/data/bounds.hpp"
+#include "scanmill/data/spacing.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/certified_hausdorff.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
@@ -46,6 +48,8 @@ struct Held {
     Array<Vec3> queries;
     Array<Triangle> query_triangles;
     Value file;
+    TriangleMesh model;  ///< closed, of the cloud
+    std::vector<std::shared_ptr<const PointCloud>> scans;  ///< of a part of the model
 
     TriangleMesh mesh() const {
         TriangleMesh mesh;
@@ -253,6 +257,39 @@ Json tightly_closed(Held& held, const Json& request) {
             {"triangles", result.mesh.triangles.size()}, {"unused", result.unused}};
 }
 
+/// Loads points, makes a closed mesh of them, and scans a part of it again: the centroids of the triangles within 3 %
+/// of the diagonal of its highest vertex.
+Json load_model(Held& held, const Json& request) {
+    Json loaded = load(held, request);
+    Context context;
+    held.model = tight_cocone(delaunay(held.cloud, {}, context).tets, {}, context).mesh;
+    const auto& positions = held.model.positions;
+    const double radius = 0.03 * bounding_box(positions.span()).diagonal();
+    const Vec3 top = *std::ranges::max_element(positions, {}, [](const Vec3& p) { return p.z(); });
+    Array<Vec3> points;
+    for (const auto& [a, b, c] : held.model.triangles)
+        if (const Vec3 centroid = (positions[a] + positions[b] + positions[c]) / 3; (centroid - top).norm() < radius)
+            points.push_back(centroid);
+    PointCloud scan;
+    scan.positions = std::move(points);
+    held.scans = {std::make_shared<const PointCloud>(std::move(scan))};
+    return loaded;
+}
+
+Json updated(Held& held, const Json& request) {
+    Context context = context_for(request);
+    MeshUpdateParams params;
+    params.max_distance = 3 * edge_spacing(held.model);
+    if (request.at("rebuild") == "local") params.rebuild = MeshUpdateParams::Rebuild::local;
+    MeshUpdateResult result;
+    const double seconds = peers::seconds_of([&] { result = mesh_update(held.model, held.scans, params, context); });
+    return {{"seconds", seconds},
+            {"added", result.added},
+            {"discarded", result.discarded},
+            {"replaced", result.replaced},
+            {"triangles", result.mesh.triangles.size()}};
+}
+
 Json grown(Held& held, const Json& request) {
     Context context = context_for(request);
     RegionGrowResult result;
@@ -455,6 +492,8 @@ int main() {
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},
                           {"tight-cocone", with_held(tightly_closed)},
+                          {"load-model", with_held(load_model)},
+                          {"mesh-update", with_held(updated)},
                           {"region-grow", with_held(grown)},
                           {"cluster-mesh", with_held(clustered)},
                           {"decimate", with_held(decimated)},

@@ -137,6 +137,52 @@ INSTANTIATE_TEST_SUITE_P(
                     Step{3, MeshUpdateParams::Overlap::projected}, Step{-3, MeshUpdateParams::Overlap::projected},
                     Step{6, MeshUpdateParams::Overlap::candidates}, Step{-8, MeshUpdateParams::Overlap::candidates}));
 
+/// The triangles of the mesh that lie outside of the ball.
+std::set<std::array<Position, 3>> triangles_beyond(const TriangleMesh& mesh, const Vec3& centre, double radius) {
+    std::set<std::array<Position, 3>> found = triangles(mesh);
+    std::erase_if(found, [&](const std::array<Position, 3>& corners) {
+        return std::ranges::any_of(corners, [&](const Position& p) {
+            return (Vec3(std::get<0>(p), std::get<1>(p), std::get<2>(p)) - centre).norm() < radius;
+        });
+    });
+    return found;
+}
+
+TEST(RebuildLocal, StepsOnABlock_LikeTheWhole_AndTheRestKeepsItsTriangles) {
+    for (const double height : {6.0, -8.0}) {
+        const Clouds clouds{step_cloud(middle, 20, height, 4, 1)};
+        MeshUpdateParams params = with_distance(3);
+        params.rebuild = MeshUpdateParams::Rebuild::local;
+        Context context;
+        const MeshUpdateResult result = updated(block(), clouds, params, context);
+        EXPECT_EQ(topology(result.mesh).euler, 2);
+        EXPECT_NEAR(signed_volume(result.mesh), 48000 + 400 * height, updated_area(result.mesh) / 2);
+        ASSERT_EQ(result.changes.size(), 1);
+        EXPECT_NEAR(result.changes[0].volume_added - result.changes[0].volume_removed, 400 * height, 28 * 28 / 2.0);
+    }
+}
+
+TEST(RebuildLocal, ABumpOnASphere_BeyondTheCollarAllBytesStay) {
+    const TriangleMesh model = geodesic_sphere(10, 40);
+    for (const bool is_added : {true, false}) {
+        Bump bump;
+        bump.is_added = is_added;
+        const Clouds clouds{bump_cloud(bump, {})};
+        MeshUpdateParams params = with_distance(1);
+        params.rebuild = MeshUpdateParams::Rebuild::local;
+        Context context;
+        const MeshUpdateResult result = updated(model, clouds, params, context);
+        EXPECT_EQ(topology(result.mesh).euler, 2);
+        EXPECT_NEAR(signed_volume(result.mesh), signed_volume(model) + bump.volume() - bump.ball(10),
+                    0.5 * updated_area(result.mesh) / 2);
+        EXPECT_EQ(triangles_beyond(result.mesh, {0, 0, 10}, 9), triangles_beyond(model, {0, 0, 10}, 9));
+        const std::span<const u8> updated_faces = result.mesh.face_columns.find("updated")->values<u8>();
+        std::size_t fixed = 0;
+        while (updated_faces[fixed] == 0) ++fixed;
+        EXPECT_GT(fixed, model.triangles.size() / 2) << "fixed triangles come first";
+    }
+}
+
 TEST(MeshUpdate, UnchangedRegionOfAFlatFace_StaysWithinASpacing) {
     const Clouds clouds{step_cloud(middle, 20, 0, 4, 1)};
     Context context;
