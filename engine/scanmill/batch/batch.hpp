@@ -36,8 +36,8 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
-/// The files of a scan for one workflow input other than the first. They need not exist: a missing file fails only the
-/// cells that read it.
+/// The files of a scan for one workflow input other than the first: those that paths with wildcards match, path by path.
+/// They need not exist: a missing file fails only the cells that read it.
 struct BatchInput {
     std::vector<std::filesystem::path> files;
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the files

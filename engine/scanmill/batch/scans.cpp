@@ -10,6 +10,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/poses/poses.hpp"
 #include "scanmill/io/mapped_file.hpp"
 #include "scanmill/workflow/grammar.hpp"
@@ -384,6 +385,18 @@ private:
         return folder_ / with_stem_and_folder(path_template, scan.file);
     }
 
+    /// The files that match a path with wildcards. Wildcards in the names of the scan and its folder match themselves.
+    std::vector<fs::path> files_for(const BatchScan& scan, const std::string& path_template,
+                                    const OnWarning& warn) const {
+        const std::string pattern = with_placeholders(path_template, [&](const std::string& placeholder) {
+            std::string literal;
+            for (const char each : placeholder == "folder" ? folder_name(scan.file) : stem_of(scan.file))
+                literal += has_wildcards({each}) ? fmt::format("[{}]", each) : std::string(1, each);
+            return literal;
+        });
+        return scan_files(folder_, pattern, warn);
+    }
+
     /// A sentence that explains why `file`, which `scan` needs, is missing; nothing if the file exists. `what`: "the
     /// truth".
     static std::optional<std::string> missing(const fs::path& file, std::string_view what, const BatchScan& scan) {
@@ -435,6 +448,29 @@ private:
                      diagnostics_);
     }
 
+    /// Adds the files of an input to every scan. A path without a match stays in the list, as a missing file.
+    void take_matching_files(const YamlNode& node, const std::string& what, const std::string& input,
+                             std::span<BatchScan> scans) {
+        static const char* const forms = "a file, as targets/{stem}.ply, or a list";
+        const auto take = [&](BatchScan& scan, const fs::path& file) { scan.inputs[input].files.push_back(file); };
+        if (!node.is_scalar() || !has_wildcards(node.text)) return take_files(node, what, forms, scans, take);
+        const auto text = path_template(node, what, forms);
+        if (!text) return;
+        std::set<std::string> warnings;  // of folders that the patterns of several scans visit, once
+        Complaints complaints;
+        for (BatchScan& scan : scans) try {
+                for (const fs::path& file :
+                     files_for(scan, *text, [&](std::string sentence) { warnings.insert(std::move(sentence)); }))
+                    take(scan, file);
+            } catch (const Error& error) {
+                complaints.add(fmt::format("{}; expected {} of '{}'", error.sentence(), what, scan.file.string()));
+                take(scan, file_for(scan, *text));
+            }
+        const auto warn = [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); };
+        for (const std::string& warning : warnings) warn(warning);
+        complaints.report(what, warn);
+    }
+
     void inputs(const YamlEntry& entry, std::span<BatchScan> scans) {
         if (!require_map(entry.value, "a map from inputs to files, as {target: target.ply}", diagnostics_)) return;
         for (const YamlEntry& input : entry.value.entries) {
@@ -444,9 +480,7 @@ private:
             if (value.is_sequence() && value.items.empty())
                 diagnostics_.error(value.position, "the list of files for the input '{}' is empty", input.key);
             for (const YamlNode& node : value.is_sequence() ? std::span(value.items) : std::span(&value, 1))
-                take_files(
-                    node, fmt::format("the input '{}'", input.key), "a file, as targets/{stem}.ply, or a list", scans,
-                    [&](BatchScan& scan, const fs::path& file) { scan.inputs[input.key].files.push_back(file); });
+                take_matching_files(node, fmt::format("the input '{}'", input.key), input.key, scans);
         }
     }
 

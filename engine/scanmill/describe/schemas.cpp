@@ -138,7 +138,7 @@ const char* const batch_grammar = R"json({
       "invalid": {"$ref": "#/definitions/invalid"},
       "pose": {"$ref": "#/definitions/pose"},
       "truth": {"$ref": "#/definitions/truth"},
-      "in": {"type": "object", "description": "The scan's files for the workflows' further inputs, by their names.",
+      "in": {"type": "object", "description": "The scan's files for the workflows' further inputs, by their names. Paths may have wildcards.",
              "additionalProperties": false,
              "patternProperties": {"^[A-Za-z][A-Za-z0-9_-]*$": {
                "if": {"type": "array"}, "then": {"minItems": 1, "items": {"$ref": "#/definitions/scan-file"}},

@@ -204,6 +204,30 @@ TEST_F(BatchScans, MissingTruthOrFurtherInput_IsAWarningForEachScan) {
     EXPECT_THAT(batch_.scans[0].inputs.at("to").files, SizeIs(2));
 }
 
+TEST_F(BatchScans, WildcardsOfFurtherInputs_TakeTheFilesOfEachScan) {
+    for (const char* name : {"clouds/a-2.ply", "clouds/a-1.ply", "clouds/b-1.ply", "clouds/c.ply"})
+        folder_.write(name, "x");
+    EXPECT_THAT(scans("[{path: 'scans/[ab].ply', in: {clouds: ['clouds/{stem}-*.ply', 'clouds/c.ply']}}]"), IsEmpty());
+    EXPECT_THAT(batch_.scans[0].inputs.at("clouds").files,
+                ElementsAre(folder_ / "clouds/a-1.ply", folder_ / "clouds/a-2.ply", folder_ / "clouds/c.ply"));
+    EXPECT_THAT(batch_.scans[1].inputs.at("clouds").files,
+                ElementsAre(folder_ / "clouds/b-1.ply", folder_ / "clouds/c.ply"));
+}
+
+TEST_F(BatchScans, WildcardsInTheNameOfAScan_MatchThemselves) {
+    for (const char* name : {"parts/p[1].ply", "clouds/p[1]-1.ply", "clouds/p1-1.ply"}) folder_.write(name, "x");
+    EXPECT_THAT(scans("[{path: 'parts/p[1].ply', in: {clouds: 'clouds/{stem}-*.ply'}}]"), IsEmpty());
+    EXPECT_THAT(batch_.scans[0].inputs.at("clouds").files, ElementsAre(folder_ / "clouds/p[1]-1.ply"));
+}
+
+TEST_F(BatchScans, WildcardsOfFurtherInputsWithoutAMatch_AreAWarning) {
+    folder_.write("clouds/a-1.ply", "x");
+    EXPECT_THAT(scans("[{path: 'scans/[ab].ply', in: {clouds: 'clouds/{stem}-*.ply'}}]"),
+                ElementsAre(AllOf(HasSubstr(": warning: no file matches 'clouds/b-*.ply'"),
+                                  HasSubstr("expected the input 'clouds' of"), HasSubstr("scans/b.ply"))));
+    EXPECT_THAT(batch_.scans[1].inputs.at("clouds").files, ElementsAre(folder_ / "clouds/b-*.ply")) << "it is missing";
+}
+
 TEST_F(BatchScans, StemOfACompressedScan_HasNeitherExtension) {
     folder_.write("packed/part.ply.gz", "x");
     folder_.write("truth/part.stl", "x");
