@@ -10,6 +10,7 @@ import frame_pictures as frames
 import patch_pictures as patches
 import probe_pictures as probes
 import surface_pictures as surfaces
+import update_pictures as updates
 
 
 def main():
@@ -31,6 +32,7 @@ def main():
         ("inspect", surfaces.inspect),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
+        ("mesh_update", updates.mesh_update),
         ("normals", cleanups.normals),
         ("outlier_removal", clouds.outlier_removal),
         ("patch_distance", patches.patch_distance),
