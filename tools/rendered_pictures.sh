@@ -33,9 +33,19 @@ draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filt
 draw "$data/meshes/mannequin-devil.off" mesh 'size: [400, 300], style: lines' filters/render/lines.png
 draw "$data/meshes/elephant-with-holes.off" mesh 'size: [400, 300], edges: true, boundaries: true' filters/render/edges.png
 
-# The page on inspection: its own files and commands.
-awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/docs/inspection.md"
+# The pages on inspection and on changed parts: their own files and commands.
+files_of() { awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/$1"; }
+files_of docs/inspection.md
 run scan.yaml -o .
 run inspect part.ply --unit mm --in nominal=block.off --set 'tolerance=[-0.1 mm, 0.1 mm]' -o out || true
 mkdir -p "$root/docs/inspection"
 cp out/failed/part-deviation.png out/failed/part-on-nominal.png "$root/docs/inspection/"
+
+files_of docs/part-changed.md
+run rescan.yaml part.off --unit mm -o clouds
+clouds=clouds=clouds/block-pad.ply,clouds/block-pocket.ply
+run update-mesh block.off --unit mm --in $clouds --set 'max-distance=1.5 mm' -o changed
+run pictures.yaml block.off --unit mm --in $clouds -o changed
+mkdir -p "$root/docs/part-changed"
+cp changed/model.png changed/scans.png changed/updated.png "$root/docs/part-changed/"
+cp changed/block-change.png "$root/docs/part-changed/change.png"

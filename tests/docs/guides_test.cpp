@@ -40,6 +40,13 @@ TEST(Guide, Inspection_PrintsWhatItShows) {
     follow(guide, folder.path(), folder / "home");
 }
 
+TEST(Guide, PartChanged_PrintsWhatItShows) {
+    const TemporaryFolder folder;
+    const Guide guide = read_guide(source / "docs/part-changed.md");
+    ASSERT_GE(guide.commands.size(), 10u);
+    follow(guide, folder.path(), folder / "home");
+}
+
 TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the guide builds without sanitizers, which a module must share with the program";
