@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 
 #include "filters/mesh_update/blocks.hpp"
 #include "scanmill/data/topology.hpp"
@@ -114,6 +116,25 @@ TEST_F(UpdateWorkflows, CloudBesideTheMesh_FailsOrKeepsTheMesh) {
     const auto mesh = read_mesh(folder_ / "out/block-updated.ply");
     EXPECT_TRUE(std::ranges::equal(mesh->triangles, block().triangles));
     EXPECT_TRUE(std::ranges::equal(mesh->positions, block().positions));
+}
+
+/// The script of docs/part-changed.md, with a tenth of the points.
+TEST_F(UpdateWorkflows, WorkedCases_ReplaceWhatTheirCloudsShow) {
+    const std::string script = source_folder() + "/docs/part-changed/worked_cases.py";
+    const fs::path cases = folder_ / "cases";
+    ASSERT_EQ(std::system(("python3 '" + script + "' '" + cases.string() + "' --share 0.1").c_str()), 0);
+    const ProgramResult scanned = scanmill_program({"batch", "scan.yaml", "-o", "scans", "-q"}, {.folder = cases});
+    ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+    const ProgramResult updated =
+        scanmill_program({"batch", "update.yaml", "-o", "updated", "-q", "--strict"}, {.folder = cases});
+    ASSERT_EQ(updated.exit_code, 0) << updated.err;
+    const std::map<std::string, int> replaced{
+        {"airbag", 3}, {"block", 1}, {"golf-club", 1}, {"joystick-1", 1}, {"joystick-2", 1}};
+    for (const auto& [name, groups] : replaced) {
+        const std::string json = content_of(cases / ("updated/" + name + "-updated.ply.json"));
+        EXPECT_THAT(json, HasSubstr("\"replaced\": " + std::to_string(groups))) << name;
+        EXPECT_THAT(json, HasSubstr("\"groups\": " + std::to_string(groups + 1))) << name;
+    }
 }
 
 TEST_F(UpdateWorkflows, TightCocone_MakesAClosedMeshOfAScan) {
