@@ -44,8 +44,8 @@ cp out/failed/part-deviation.png out/failed/part-on-nominal.png "$root/docs/insp
 files_of docs/part-changed.md
 run rescan.yaml part.off --unit mm -o clouds
 clouds=clouds=clouds/block-pad.ply,clouds/block-pocket.ply
-run update-mesh block.off --unit mm --in $clouds --set 'max-distance=1.5 mm' --set 'scale=[-6 mm, 6 mm]' -o changed
-run pictures.yaml block.off --unit mm --in $clouds -o changed
+run update-mesh block.off --unit mm --in "$clouds" --set 'max-distance=1.5 mm' --set 'scale=[-6 mm, 6 mm]' -o changed
+run pictures.yaml block.off --unit mm --in "$clouds" -o changed
 mkdir -p "$root/docs/part-changed"
 cp changed/model.png changed/scans.png changed/updated.png "$root/docs/part-changed/"
 cp changed/block-change.png "$root/docs/part-changed/change.png"
