@@ -4,7 +4,7 @@ import itertools
 import math
 import random
 
-from drawing import BRIGHT, INK, PALE, SOLID, Picture
+from drawing import BRIGHT, INK, SOLID, Picture
 from plane_geometry import nearest_on_profile
 
 ADDED = "#3e80be"
