@@ -36,7 +36,7 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
-/// The files of a scan for one workflow input other than the first: those that paths with wildcards match, path by path.
+/// The files of a scan for one workflow input other than the first; for a path with wildcards, those that match it.
 /// They need not exist: a missing file fails only the cells that read it.
 struct BatchInput {
     std::vector<std::filesystem::path> files;
