@@ -288,7 +288,7 @@ Selection Selector::repaired(const Selection& start) const {
     Array<double> price(tets_.cells.size());
     std::ranges::fill(price, 0.0);
     for (std::size_t i = 0; i < ascent.outside(); ++i) price[sweep_.cells[i]] = sweep_.values[i];
-    ascent.solid().repair(price);
+    ascent.solid().repair(price, context_);
 
     Array<u8> labels = ascent.solid().labels();
     fill_cavities(tets_, labels);

@@ -172,43 +172,54 @@ Choice chosen_groups(const CloudAngles& angles, double gap) {
     return choice;
 }
 
-long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced) {
-    const auto stays = [&](u32 facet) {
-        const std::int32_t group = groups.of_facet[facet];
-        return group == Groups::overlap || !replaced[static_cast<std::size_t>(group)];
-    };
-    long facets = 0, border = 0, vertices = 0;
-    std::vector<u8> state(model.mesh.positions.size(), u8(0));  // 1: some facet stays, 2: some facet goes
-    for (u32 h = 0; h < model.opposite.size(); ++h) {
-        state[model.start(h)] = static_cast<u8>(state[model.start(h)] | (stays(h / 3) ? 1 : 2));
-        if (!stays(h / 3)) continue;
+namespace {
+
+/// V - E + F of the facets for which is_in(facet) holds; a vertex counts once per fan.
+template <class IsIn>
+long euler(std::span<const u32> opposite, const IsIn& is_in) {
+    const auto next = [&](u32 h) { return opposite[half_edges::before(h)]; };  // around the start, counter-clockwise
+    const auto leads_on = [&](u32 h) { return h < half_edges::no_half_edge && is_in(h / 3); };
+    long facets = 0, border = 0, closed_fans = 0;
+    std::vector<bool> is_seen(opposite.size());
+    for (u32 h = 0; h < opposite.size(); ++h) {
+        if (!is_in(h / 3)) continue;
         facets += h % 3 == 0;
-        border += !stays(model.opposite[h] / 3);
+        border += !leads_on(opposite[h]);
+        u32 around = h;
+        while (!is_seen[around]) {
+            is_seen[around] = true;
+            if (!leads_on(next(around))) break;
+            around = next(around);
+            closed_fans += around == h;
+        }
     }
-    for (const u8 flags : state) vertices += flags == 1;
     // Every open fan has one border half-edge that leaves its vertex.
-    return vertices + border - (3 * facets + border) / 2 + facets;
+    return closed_fans + border - (3 * facets + border) / 2 + facets;
 }
 
-long euler_of(const CloudSurface& cloud) {
+}  // namespace
+
+long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced) {
+    return euler(model.opposite, [&](u32 facet) {
+        const std::int32_t group = groups.of_facet[facet];
+        return group == Groups::overlap || !replaced[static_cast<std::size_t>(group)];
+    });
+}
+
+CloudEuler euler_of(const CloudSurface& cloud) {
     const Array<u32> opposite = half_edges::opposites(cloud.mesh);
     const Array<u32> component = components_of(opposite);
     std::vector<bool> is_used(component.size());
-    for (const CloudLoop& loop : cloud.loops) is_used[component[loop.half_edges[0] / 3]] = true;
-    long facets = 0, border = 0, vertices = 0, loops = 0;
-    std::vector<u8> state(cloud.mesh.positions.size(), u8(0));  // 1: in a facet, 2: on the border
-    for (u32 h = 0; h < opposite.size(); ++h) {
-        if (!is_used[component[h / 3]]) continue;
-        const bool is_border = opposite[h] == half_edges::boundary;
-        for (const u32 v : {half_edges::start(cloud.mesh, h), half_edges::end(cloud.mesh, h)})
-            state[v] = static_cast<u8>(state[v] | (is_border ? 3 : 1));
-        facets += h % 3 == 0;
-        border += is_border;
+    long components = 0, loops = 0;
+    for (const CloudLoop& loop : cloud.loops) {
+        const u32 own = component[loop.half_edges[0] / 3];
+        components += !is_used[own];
+        is_used[own] = true;
     }
-    for (const u8 flags : state) vertices += flags == 1;
     for (const Array<u32>& loop : boundary_loops(cloud.mesh, opposite)) loops += is_used[component[loop[0] / 3]];
-    const long filled = loops - static_cast<long>(cloud.loops.size());
-    return vertices + border - (3 * facets + border) / 2 + facets + filled;
+    const long used = static_cast<long>(cloud.loops.size());
+    return {euler(opposite, [&](u32 facet) { return is_used[component[facet]]; }) + loops - used,
+            2 * components - used};
 }
 
 }  // namespace scanmill::updating

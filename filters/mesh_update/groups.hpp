@@ -67,10 +67,14 @@ struct Choice {
 Choice chosen_groups(const CloudAngles& angles, double gap);
 
 /// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments,
-/// so without the replaced groups. Where that part touches itself in a vertex, the vertex counts once per fan. Cost:
-/// linear.
+/// so without the replaced groups. A vertex counts once per fan. Cost: linear.
 long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced);
-/// V - E + F of the components of the cloud's surface that have a loop in use, with their other loops filled.
-long euler_of(const CloudSurface& cloud);
+
+/// V - E + F of the components of a cloud's surface that have a loop in use, with their other loops filled.
+struct CloudEuler {
+    long as_found = 0;  ///< a vertex counts once per fan
+    long as_sphere = 0;  ///< if every component is a sphere with its loops cut out
+};
+CloudEuler euler_of(const CloudSurface& cloud);
 
 }  // namespace scanmill::updating

@@ -3,20 +3,27 @@
 /// `rebuild: local`: replaces a part of a closed mesh by the surface through new points. All other triangles stay as
 /// they are, and the work does not grow with the mesh.
 ///
-/// For each change, or several that are near each other:
-/// 1. The *collar* are the facets that connect to the removed ones over edges and have a vertex within three spacings
-///    of them. The *guard* are further facets within three spacings of the collar or the removed facets, opposite walls
-///    included.
-/// 2. A new surface is made as tight-cocone makes it, from the points of the change and all vertices of these facets
-///    that are not discarded. Eight points far around them close the tetrahedralisation. The facets that remain of the
-///    mesh determine which side of the new surface is inside.
-/// 3. An edge is *common* if both surfaces have it. Beginning with the removed facets and with the new facets at new
-///    points, facets are marked. Over an edge that is not common, the mark passes to the neighbour in the same surface;
-///    over a common one, to the facet of the other surface on the same side of the edge. So the marked facets of both
+/// For each change, or several changes that are near each other:
+/// 1. The *collar* consists of the facets that are connected to the removed ones and have a vertex within three
+///    spacings of them. The *guard* consists of all other facets within about three spacings of these, whether they
+///    are connected or belong to an opposite wall. The spacing is the cloud's or the median edge of the facets beside
+///    the removed ones, whichever is larger.
+/// 2. A new surface is made as by tight-cocone from the points of the change and the vertices of these facets that are
+///    not discarded. The sample ends at the guard, so the hull does not show which side is outside; the facets that
+///    remain do. Eight points far away keep the surface off the hull, where it would have no inner cells.
+/// 3. An edge is *common* if both surfaces have it. Facets are marked, beginning with the removed ones and with the new
+///    facets at new points. Over an edge that is not common, the mark passes to the neighbour in the same surface; over
+///    a common one, to the facet of the other surface on the same side of the edge. So the marked facets of both
 ///    surfaces end up with the same boundary, edge for edge: the seam. The marked facets of the mesh are exchanged for
-///    those of the new surface. Marks must stay within the collar.
+///    those of the new surface. Marks must stay within the collar. Parts of the new surface without a seam are not
+///    used.
 ///
-/// Source: Woo, Dey 2005 for the problem; the method is our own.
+/// Facets of the mesh that the new surface does not have are therefore kept unless they are connected to the change,
+/// and a planar quadrangle may have its other diagonal: the mesh need not be a Delaunay surface of its vertices.
+///
+/// Source: Woo, Dey 2005 for the problem; the method is our own. Measured on random dents, bumps and repeats with radii
+/// of 2 to 10 edges that stay clear of the rest of the mesh: of 375 on 22 meshes made by tight-cocone 1.6 % were
+/// refused, all at sharp edges and thin walls; of 252 on 15 other meshes 3.2 %.
 
 #include <span>
 #include <vector>
@@ -28,7 +35,7 @@ namespace scanmill::updating {
 
 /// The change that one cloud makes.
 struct LocalChange {
-    /// Rows of facets of the mesh, among them all facets at discarded vertices.
+    /// Rows of facets of the mesh, among them all facets at discarded vertices. Without any, the change has no effect.
     std::vector<u32> removed;
     /// Rows of points.
     std::vector<u32> points;

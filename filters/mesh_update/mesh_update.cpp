@@ -18,6 +18,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/distance/swept_distance.hpp"
@@ -38,6 +39,8 @@ constexpr double largest_offset = 0.5;
 
 /// Above this share of unused points, compared with the points of the clouds, a result is doubtful.
 constexpr double most_unused = 0.02;
+/// Above this share of the new surface farther than a spacing from everything that was given, a result is doubtful.
+constexpr double most_far = 0.01;
 
 /// The local rebuild splits long edges of facets this near to a border, in lengths of the longest edge that stays: the
 /// collar and the guard are three such edges wide each.
@@ -57,7 +60,7 @@ void require_parameters(const MeshUpdateParams& params) {
     const auto require = [](bool is_right, const char* name, const auto& value, const char* range) {
         if (!is_right) throw Error("{} must be {}; it is {}", name, range, value).hint("the defaults suit most scans");
     };
-    require(params.max_distance.value() > 0, "max-distance", params.max_distance.value(), "above 0");
+    require(params.max_distance.amount() > 0, "max-distance", params.max_distance.amount(), "above 0");
     require(params.trim >= 0 && std::isfinite(params.trim), "trim", params.trim, "0 or more");
     require(params.density > 0 && std::isfinite(params.density), "density", params.density, "above 0");
     const double gap = params.angle_gap.in_degrees();
@@ -106,6 +109,11 @@ public:
         if (resampled.added > 0) opposites = half_edges::opposites(resampled.mesh);
         context_.check_cancelled();
         const Model model(resampled.mesh, std::move(opposites), context_.threads());
+        max_distance_ =
+            params_.max_distance
+                .resolved({given_.frame.unit, [&] { return bounding_box(given_.positions.span()).diagonal(); },
+                           [&] { return edge_spacing(resampled.mesh); }})
+                .value();
         refuse_intersections(model);
         context_.progress(0.3);
         context_.metric("model-seconds", watch_.lap(), Unit::seconds);
@@ -259,14 +267,13 @@ private:
     }
 
     void find_overlaps(const Model& model) {
-        const double limit = params_.max_distance.value();
         for (CloudGroup& group : groups_) {
             std::vector<CloudLoop> used;
             for (CloudLoop& loop : group.surface.loops) {
-                LoopOverlap overlap = overlap_of(model, group.surface, loop, limit, context_);
+                LoopOverlap overlap = overlap_of(model, group.surface, loop, max_distance_, context_);
                 if (!lies_on_model(group, loop, overlap)) continue;
                 if (params_.overlap == MeshUpdateParams::Overlap::candidates)
-                    add_candidates(model, group.surface, loop, limit, overlap, context_);
+                    add_candidates(model, group.surface, loop, max_distance_, overlap, context_);
                 used.push_back(std::move(loop));
                 group.loops.push_back(std::move(overlap));
             }
@@ -278,13 +285,13 @@ private:
     /// Whether the loop is used; a loop that is no hole and does not lie on the model is a doubt.
     bool lies_on_model(const CloudGroup& group, const CloudLoop& loop, LoopOverlap& overlap) {
         const std::size_t points = overlap.edges.size();
-        const double limit = params_.max_distance.value();
         if (static_cast<double>(overlap.hanging) > largest_hanging * static_cast<double>(points)) {
             if (!loop.is_hole)
                 doubt("hanging", group, overlap.farthest,
                       fmt::format("{} of {} points of a loop are farther than max-distance, {:.4g} {}, from the model, "
                                   "the farthest {:.4g}",
-                                  overlap.hanging, points, limit, symbol(given_.frame.unit), overlap.farthest_distance),
+                                  overlap.hanging, points, max_distance_, symbol(given_.frame.unit),
+                                  overlap.farthest_distance),
                       "check the unit, the frame and the registration of the cloud; the scan must overlap the "
                       "unchanged model along its whole border");
             return false;
@@ -356,6 +363,8 @@ private:
                 doubt("ambiguous", group, loop_start(group, group.surface.loops[0]), choice.ambiguity,
                       "the scan must overlap the unchanged model by several spacings along its whole border");
             for (const GroupAngle& angle : group.angles.groups) {
+                // Fragments between two barriers belong to neither cloud.
+                if (angle.share < least_group_share) continue;
                 const bool is_chosen = std::ranges::binary_search(choice.replaced, angle.group);
                 (is_chosen ? replacer : keeper)[angle.group] = &group;
                 if (is_chosen) is_replaced_[angle.group] = true;
@@ -555,6 +564,7 @@ private:
             listed.deviation = std::sqrt(listed.deviation);
             if (listed.area > 0) result_.changes.push_back(listed);
         }
+        doubt_distance(model, difference, after);
     }
 
     /// Doubts a result that is not the rest of the model joined with the surfaces of the clouds.
@@ -564,16 +574,63 @@ private:
                                        "are noisy, or not registered with the model",
                                        result_.unused),
                            "mesh");
-        long expected = euler_of_rest(model, segmentation_, is_replaced_);
-        for (const CloudGroup& group : groups_) expected += euler_of(group.surface);
+        // The surface of a noisy cloud has pinholes, and handles beside them; the rest of it is then taken for a
+        // sphere.
+        long expected = euler_of_rest(model, segmentation_, is_replaced_), without_handles = expected;
+        for (const CloudGroup& group : groups_) {
+            const CloudEuler found = euler_of(group.surface);
+            expected += found.as_found;
+            without_handles += group.surface.ignored_loops > 0 ? found.as_sphere : found.as_found;
+        }
         // Every edge of a closed mesh has two triangles.
         const long found =
             static_cast<long>(result_.mesh.positions.size()) - static_cast<long>(result_.mesh.triangles.size()) / 2;
-        if (found != expected)
+        if (found != expected && found != without_handles)
             context_.doubt(fmt::format("the result has the Euler characteristic {}; the rest of the model and the "
                                        "surfaces of the clouds give {}",
-                                       found, expected),
+                                       found, without_handles),
                            "mesh");
+    }
+
+    /// Doubts new triangles away from everything that was given. `after`: the new triangles.
+    void doubt_distance(const Model& model, const Difference& difference, std::span<const Triangle> after) {
+        Array<Vec3> positions;
+        Array<Triangle> given;
+        double spacing = 0;
+        for (const CloudGroup& group : groups_) {
+            const u32 first = static_cast<u32>(positions.size());
+            positions.insert(positions.end(), group.surface.mesh.positions.begin(), group.surface.mesh.positions.end());
+            for (const Triangle& t : group.surface.mesh.triangles)
+                given.push_back({first + t[0], first + t[1], first + t[2]});
+            spacing = std::max(spacing, group.surface.spacing);
+        }
+        for (const u32 facet : difference.old_facets) {
+            const std::int32_t group = segmentation_.of_facet[facet];
+            if (group != Groups::overlap && is_replaced_[static_cast<std::size_t>(group)]) continue;
+            const u32 first = static_cast<u32>(positions.size());
+            for (const Vec3& corner : model.corners(facet)) positions.push_back(corner);
+            given.push_back({first, first + 1, first + 2});
+        }
+        const TriangleTree tree(positions, given, context_.threads());
+        const std::span<const Vec3> vertices = result_.mesh.positions.span();
+        double far = 0, all = 0;
+        u32 hint = NearestTriangle::none;
+        for (const Triangle& t : after) {
+            const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
+            const double area = area_vector(a, b, c).norm() / 2;
+            all += area;
+            for (const Vec3& point : {Vec3((a + b + c) / 3), Vec3((a + b) / 2), Vec3((b + c) / 2), Vec3((c + a) / 2)})
+                if (!tree.is_within(point, spacing * spacing, hint)) {
+                    far += area;
+                    break;
+                }
+        }
+        if (far > most_far * all)
+            context_.doubt(
+                fmt::format("{:.2g} % of the new surface is farther than {:.4g} {}, the spacing of the cloud, "
+                            "from the surfaces of the clouds and from what was kept",
+                            100 * far / all, spacing, symbol(given_.frame.unit)),
+                "mesh");
     }
 
     /// Returns the given model with the columns of an update.
@@ -630,6 +687,7 @@ private:
     StopWatch watch_;
     Array<Vec3> positions_;  ///< of all clouds, relative to the model's origin
     std::vector<CloudGroup> groups_;
+    double max_distance_ = 0;
     Array<u8> discarded_;
     Groups segmentation_;
     std::vector<bool> is_replaced_;

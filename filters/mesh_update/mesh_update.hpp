@@ -37,7 +37,8 @@ struct MeshUpdateParams : TightCoconeParams {
         keep  ///< return the model, with a warning
     };
     Rebuild rebuild = Rebuild::whole;
-    /// Boundary points of a cloud farther from the model have no overlap facet; above 0.
+    /// Boundary points of a cloud farther from the model have no overlap facet; above 0. The spacing is the median edge
+    /// of the model once its long edges are split.
     Length max_distance = Length::spacings(3);
     Overlap overlap = Overlap::projected;
     /// The mean angles of two groups must differ by more than this; 0 to 90 degrees.
@@ -79,7 +80,7 @@ struct MeshUpdateResult {
 };
 
 /// Pre:  the model is closed, a manifold, faces outwards and does not intersect itself; clouds have at least one point;
-///       one unit for all (origins may differ); parameters in their ranges, lengths resolved. Throws Error otherwise,
+///       one unit for all (origins may differ); parameters in their ranges. Throws Error otherwise,
 ///       and with OnDoubt::fail for each of these doubts, with cloud, position and numbers:
 ///        - hanging: more than a fifth of a loop is farther than max_distance from the model;
 ///        - registration: the median distance of a loop's points from their facets exceeds half a spacing of the cloud;
@@ -94,7 +95,8 @@ struct MeshUpdateResult {
 /// Ties: of equally near facets, that with the lowest row; of equally near vertices, the lowest.
 /// Cost: whole: that of delaunay() and tight_cocone() on all points; local: one pass over the model, then the change.
 /// Metrics: see plugin.cpp. Doubts a result whose topology is not that of the kept groups joined with the clouds'
-///       surfaces, and passes on the doubts of tight_cocone().
+///       surfaces, of which more than 1 % of the new area is farther than a spacing from both, or which leaves out
+///       points: more than 2 % of those of the clouds.
 MeshUpdateResult mesh_update(const TriangleMesh& model, std::span<const std::shared_ptr<const PointCloud>> clouds,
                              const MeshUpdateParams& params, Context& context);
 

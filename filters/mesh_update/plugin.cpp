@@ -30,8 +30,11 @@ SCANMILL_FILTER() {
                  {"local", P::Rebuild::local,
                   "Only the surroundings of the change are made anew; all other triangles keep their bytes."}},
                 "How much of the mesh is made anew.")
-        .param("max-distance", &P::max_distance,
-               "Border points of a cloud farther from the model lie on no facet of it.", above(0))
+        .param(
+            "max-distance", &P::max_distance,
+            "Border points of a cloud farther from the model lie on no facet of it. The spacing is the median edge of "
+            "the model once its long edges are split.",
+            above(0), takes_spacings)
         .choice("overlap", &P::overlap,
                 {{"projected", P::Overlap::projected, "The facets under the border of a cloud."},
                  {"candidates", P::Overlap::candidates,

@@ -35,7 +35,6 @@ Rebuilt rebuild_whole(std::span<const Vec3> positions, const Frame& frame, std::
     const DelaunayResult tets = delaunay(points, {}, nested);
     const TightCoconeResult solid = tight_cocone(tets.tets, params, nested);
     for (const std::string& warning : nested.warnings()) context.warn(warning);
-    for (const Doubt& doubt : nested.doubts()) context.doubt(doubt.text, "mesh");
     Rebuilt result;
     const std::span<const u32> row_of = solid.mesh.vertex_columns.find(row_column)->values<u32>();
     result.rows.assign(row_of.begin(), row_of.end());

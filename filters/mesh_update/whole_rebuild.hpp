@@ -14,8 +14,8 @@ struct Rebuilt {
     Array<u32> replaced;  ///< facets of the model that are not among the first `fixed` triangles, ascending
 };
 
-/// tight_cocone() of the points at these rows, with its warnings and doubts; `facets` is the number of the model's.
-/// Throws Error as tight_cocone() does.
+/// tight_cocone() of the points at these rows, with its warnings; `facets` is the number of the model's. The doubts of
+/// tight_cocone() are left out, because they expect an even sampling of the whole surface. Throws Error as it does.
 Rebuilt rebuild_whole(std::span<const Vec3> positions, const Frame& frame, std::span<const u32> rows,
                       std::size_t facets, const TightCoconeParams& params, Context& context);
 

@@ -51,7 +51,7 @@ std::size_t mend(const Diagram& diagram, Array<u8>& labels, Context& context) {
     for (std::size_t cell = 0; cell < squared.size(); ++cell)
         squared[cell] = (diagram.centres[cell] - tets.positions[tets.cells[cell][0]]).squaredNorm();
     IncrementalSolid solid(tets, std::move(labels), vertices);
-    solid.repair(squared);
+    solid.repair(squared, context);
     labels = solid.labels();
     fill_cavities(tets, labels);
     return vertices.size();

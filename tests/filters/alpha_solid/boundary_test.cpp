@@ -170,7 +170,7 @@ TEST(IncrementalSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
         const BoundaryDefects defects = boundary_defects(boundary_triangles(tets, labels, 1), 300, 1);
         ASSERT_FALSE(defects.vertices.empty());
         IncrementalSolid incremental(tets, labels, defects.vertices);
-        incremental.repair(price);
+        incremental.repair(price, Execution());
         EXPECT_EQ(topology(mesh_of(tets, incremental.labels())).nonmanifold_vertices, 0u);
         for (std::size_t c = 0; c < labels.size(); ++c) EXPECT_LE(labels[c] == solid, incremental.labels()[c] == solid);
         // Filling the cavities that the repair has sealed keeps the boundary a manifold and the outside connected.

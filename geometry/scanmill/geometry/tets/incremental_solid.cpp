@@ -82,9 +82,10 @@ void IncrementalSolid::suspect_only(std::span<const u32> vertices) {
     for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
 }
 
-void IncrementalSolid::repair(std::span<const double> price) {
+void IncrementalSolid::repair(std::span<const double> price, const Execution& execution) {
     std::vector<u32> cheapest;
     while (true) {
+        execution.check_cancelled();
         cheapest.clear();
         std::vector<u32> still_non_manifold;
         for (; next_suspect_ < suspects_.size(); ++next_suspect_) {

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "scanmill/base/execution.hpp"
 #include "scanmill/geometry/tets/vertex_stars.hpp"
 
 namespace scanmill {
@@ -42,8 +43,8 @@ public:
     void suspect_only(std::span<const u32> vertices);
     /// Adds cells until no vertex is non-manifold. In each pass, it adds around every non-manifold vertex the cells
     /// with the smallest `price` among those that are not solid. `price` is per cell. Each pass makes a cell solid, so
-    /// the repair ends.
-    void repair(std::span<const double> price);
+    /// the repair ends. Throws Cancelled.
+    void repair(std::span<const double> price, const Execution& execution);
 
     const Array<u8>& labels() const { return labels_; }
     /// Number of vertices of solid cells.
