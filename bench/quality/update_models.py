@@ -76,3 +76,9 @@ def write(folder: pathlib.Path, name: str, mesh: Mesh) -> pathlib.Path:
     folder.mkdir(parents=True, exist_ok=True)
     write_ply(folder / name, mesh.vertices, mesh.faces)
     return folder / name
+
+
+def load_points(file: pathlib.Path) -> numpy.ndarray:
+    import trimesh
+
+    return numpy.asarray(trimesh.load(file, process=False).vertices, float)

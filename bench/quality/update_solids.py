@@ -215,8 +215,8 @@ def cylinder(count: int, radius: float = 28, height: float = 90) -> Mesh:
         disc.append(radius * ring / rings * numpy.stack([numpy.cos(here), numpy.sin(here)], axis=1))
     inner = numpy.concatenate(disc)
     flat = Delaunay(numpy.concatenate([circle, inner])).simplices.astype(int)
-    corners = numpy.concatenate([circle, inner])[flat]
-    side = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    a, b, c = (numpy.concatenate([circle, inner])[flat[:, i]] for i in range(3))
+    side = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     flat[side < 0] = flat[side < 0][:, ::-1]
     heights = height * (numpy.arange(rows + 1) / rows - 0.5)
     vertices = [numpy.column_stack([circle, numpy.full(around, z)]) for z in heights]

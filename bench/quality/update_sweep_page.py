@@ -15,7 +15,7 @@ RATIOS = ((1 / 4, "1/16 to 1/4"), (1, "1/4 to 1"), (4, "1 to 4"), (float("inf"),
 
 NOTES = f"""\
 Every case has a closed model and a feature that is added to it or removed from it at a random position. The truth is
-the exact boolean of the two polyhedra. The cloud is what a scan of the change gives: evenly spread points of the truth, on
+the exact boolean of the two polyhedra. The cloud is what a scan of the change gives: evenly spread points of it, on
 the whole change and on a ring of the unchanged model around it, {update_cases.RING[0]:g} to {update_cases.RING[1]:g} h
 wide, without normals. h is the median distance of nearest neighbours in the cloud. All points are moved together by at
 most {update_cases.SHIFT:g} h, an error of registration, and each by noise with a standard deviation sigma of at most
