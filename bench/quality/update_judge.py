@@ -30,7 +30,9 @@ QUANTILE = 99
 #: 0.5; its loop is not exactly our rim.
 REGISTRATION = 0.45
 RIM = 1.1  #: width of the band that counts as rim, in spacings
-ROUNDING = 1e-9  #: of midpoints of edges, about 100 units from the origin
+#: Largest distance of vertices that resampling adds from the model. The search is in float, about 100 units from the
+#: origin, and may find a neighbour of the nearest triangle.
+ROUNDING = 1e-4
 
 
 @dataclass

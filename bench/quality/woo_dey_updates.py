@@ -233,11 +233,11 @@ HEADER = ["example", "initial", "cloud", "updated", "discarded", "unused", "grou
           "volume − truth's, per updated area", *PHASES, "total"]
 
 NOTES = """\
-Lines in bold are printed in the paper (Visual C++ and CGAL, Pentium IV of 1.6 GHz, 512 MB). **None of our models is the
-paper's data**, which is not published. The lines below them are ours: solids made by a script, scanned from 30 views and
-thinned to the paper's numbers of points. The model is tight-cocone's mesh of the initial points; *initial* counts its
-vertices: fewer than the points if some stay unused. A cloud shows the change and a ring of {ring} spacings around it.
-Compare times, not shapes.
+Lines in bold are printed in the paper (Visual C++ and CGAL, Pentium IV of 1.6 GHz, 512 MB). **None of our models is
+the paper's data**, which is not published. The lines below them are ours: solids made by a script, scanned from 30
+views and thinned to the paper's numbers of points. The model is tight-cocone's mesh of the initial points; *initial*
+counts its vertices: fewer than the points if some stay unused. A cloud shows the change and a ring of {ring} spacings
+around it. Compare times, not shapes.
 
 *updated* counts the points from which the updated surface is made: kept + added = initial + resampled + added −
 discarded, in the paper's lines and in ours. *unused* of them are not on the surface. In the paper, *discarded* is the
