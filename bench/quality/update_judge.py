@@ -30,9 +30,9 @@ QUANTILE = 99
 #: 0.5; its loop is not exactly our rim.
 REGISTRATION = 0.45
 RIM = 1.1  #: width of the band that counts as rim, in spacings
-#: Largest distance of vertices that resampling adds from the model. The search is in float, about 100 units from the
-#: origin, and may find a neighbour of the nearest triangle.
-ROUNDING = 1e-4
+#: Largest distance of vertices that resampling adds from the model, in spacings. The search is in float, and may find a
+#: neighbour of the nearest triangle where triangles are long.
+ROUNDING = 0.01
 
 
 @dataclass
@@ -112,7 +112,7 @@ def faults(case: Case, result: Result, resampled: int) -> tuple[list[str], dict]
     kept = used[result.source[used] == 0]
     strange = kept[~numpy.isin(bytes_of(mesh.vertices[kept]), bytes_of(case.model.mesh.vertices))]
     astray = distances(case.model.mesh, mesh.vertices[strange]) if len(strange) else numpy.zeros(0)
-    if len(strange) > resampled or (astray > ROUNDING).any():
+    if len(strange) > resampled or (astray > ROUNDING * h).any():
         found.append(f"{len(strange)} kept vertices are not the model's")
     new = used[result.source[used] > 0]
     foreign = int((~numpy.isin(bytes_of(mesh.vertices[new]), bytes_of(case.cloud.points))).sum())
