@@ -38,9 +38,9 @@ constexpr double largest_hanging = 0.2;
 constexpr double largest_offset = 0.5;
 
 /// Above this share of unused points, compared with the points of the clouds, a result is doubtful.
-constexpr double most_unused = 0.02;
+constexpr double most_unused = 0.05;
 /// Above this share of the new surface farther than a spacing from everything that was given, a result is doubtful.
-constexpr double most_far = 0.01;
+constexpr double most_far = 0.03;
 
 /// The local rebuild splits long edges of facets this near to a border, in lengths of the longest edge that stays: the
 /// collar and the guard are three such edges wide each.
