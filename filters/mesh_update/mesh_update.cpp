@@ -376,6 +376,10 @@ private:
                       fmt::format("it replaces group {}, which {} leaves", g + 1, name_of(*keeper[g])),
                       "update with one of them, then with the other");
         result_.replaced = static_cast<std::size_t>(std::ranges::count(is_replaced_, true));
+        for (const CloudGroup& group : groups_)
+            for (const GroupAngle& angle : group.angles.groups)
+                result_.angles.push_back(
+                    {group.numbers[0] + 1, angle.group + 1, angle.mean, bool(is_replaced_[angle.group])});
         require_kept_groups();
     }
 
@@ -543,10 +547,14 @@ private:
             if (difference.is_new[i] == 1) after.push_back(mesh.triangles[i]);
         std::vector<u32> common;
         for (const u32 row : rebuilt.rows) common.push_back(row < model_vertices ? row : no_common_vertex);
+        const std::span<const u32> source = mesh.vertex_columns.find("source")->values<u32>();
         u32 hint = NearestTriangle::none;
         for (const Change& change : updating::changes({model.mesh.positions.span(), before},
                                                       {mesh.positions.span(), after}, common, context_)) {
-            MeshChange listed{0, change.volume_added, change.volume_removed, 0};
+            MeshChange listed;
+            listed.volume_added = change.volume_added;
+            listed.volume_removed = change.volume_removed;
+            double squared = -1;
             for (const u32 triangle : change.new_triangles) {
                 bool has_points = false;
                 for (const u32 vertex : after[triangle]) {
@@ -554,14 +562,17 @@ private:
                     has_points = true;
                     const NearestTriangle nearest = model.tree.nearest(mesh.positions[vertex], hint);
                     hint = nearest.slot;
-                    listed.deviation = std::max(listed.deviation, nearest.squared_distance);
+                    if (nearest.squared_distance <= squared) continue;
+                    squared = nearest.squared_distance;
+                    listed.position = mesh.positions[vertex];
+                    listed.cloud = source[vertex];
                 }
                 if (has_points)
                     listed.area += area_vector(mesh.positions.span(), after[triangle]).norm() / 2;
                 else
                     ++result_.remeshed;
             }
-            listed.deviation = std::sqrt(listed.deviation);
+            listed.deviation = std::sqrt(std::max(squared, 0.0));
             if (listed.area > 0) result_.changes.push_back(listed);
         }
         doubt_distance(model, difference, after);
@@ -657,14 +668,19 @@ private:
         count("unused-points", result_.unused);
         count("groups", result_.groups);
         count("replaced", result_.replaced);
-        std::size_t loops = 0, ignored = 0, edges = 0, paper = 0, angles = 0;
+        std::size_t loops = 0, ignored = 0, edges = 0, paper = 0;
         for (const CloudGroup& group : groups_) {
             loops += group.surface.loops.size();
             ignored += group.surface.ignored_loops;
             edges += group.surface.boundary_edges;
             paper += group.surface.paper_edges;
-            for (const GroupAngle& angle : group.angles.groups)
-                context_.metric(numbered("mean-angle", ++angles), angle.mean, Unit::angle);
+        }
+        for (std::size_t i = 0; i < result_.angles.size(); ++i) {
+            const MeshUpdateAngle& angle = result_.angles[i];
+            context_.metric(numbered("mean-angle", i + 1), angle.mean, Unit::angle);
+            context_.metric(numbered("angle-cloud", i + 1), angle.cloud);
+            context_.metric(numbered("angle-group", i + 1), angle.group);
+            context_.metric(numbered("angle-replaced", i + 1), angle.is_replaced ? 1 : 0, Unit::boolean);
         }
         for (std::size_t i = 0; i < result_.changes.size(); ++i) {
             const MeshChange& change = result_.changes[i];
@@ -672,6 +688,11 @@ private:
             context_.metric(numbered("volume-added", i + 1), change.volume_added, Unit::volume);
             context_.metric(numbered("volume-removed", i + 1), change.volume_removed, Unit::volume);
             context_.metric(numbered("deviation", i + 1), change.deviation, Unit::length);
+            const Vec3 world = given_.frame.origin + change.position;
+            context_.metric(numbered("deviation-x", i + 1), world.x(), Unit::length);
+            context_.metric(numbered("deviation-y", i + 1), world.y(), Unit::length);
+            context_.metric(numbered("deviation-z", i + 1), world.z(), Unit::length);
+            context_.metric(numbered("change-cloud", i + 1), change.cloud);
         }
         if (result_.updated) count("remeshed", result_.remeshed);
         count("loops", loops);

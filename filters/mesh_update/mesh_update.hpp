@@ -57,6 +57,16 @@ struct MeshChange {
     double volume_added = 0;  ///< inside the result and outside the model; see changes.hpp for the error
     double volume_removed = 0;  ///< inside the model and outside the result
     double deviation = 0;  ///< largest distance of a point of the clouds in it from the model
+    Vec3 position = Vec3::Zero();  ///< that point, relative to the model's origin
+    u32 cloud = 0;  ///< number of the cloud that this point is from, from 1
+};
+
+/// The angle condition at the border of a cloud.
+struct MeshUpdateAngle {
+    u32 cloud = 0;  ///< number of the cloud, from 1; of clouds that count as one, the lowest
+    u32 group = 0;  ///< of the model, from 1
+    double mean = 0;  ///< in radians
+    bool is_replaced = false;  ///< whether the group is
 };
 
 struct MeshUpdateResult {
@@ -74,6 +84,7 @@ struct MeshUpdateResult {
     std::size_t discarded = 0, kept = 0;  ///< initial + resampled = discarded + kept
     std::size_t unused = 0;  ///< kept + added - vertices of the result
     std::size_t groups = 0, replaced = 0;
+    std::vector<MeshUpdateAngle> angles;  ///< by cloud, then by group
     std::vector<MeshChange> changes;  ///< by their lowest triangle of the model
     std::size_t remeshed = 0;  ///< new triangles without a point of a cloud: vertices of the model, joined anew
     std::string doubt;  ///< why the model was kept; empty if updated

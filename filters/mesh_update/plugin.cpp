@@ -66,12 +66,19 @@ SCANMILL_FILTER() {
         .metric("replaced", Unit::count, "Groups that were replaced.", headline)
         .metric("mean-angle", Unit::angle,
                 "Mean angle between a cloud and a group at its border; by cloud, then by group.", numbered)
+        .metric("angle-cloud", Unit::count, "Number of the cloud of each mean angle.", numbered)
+        .metric("angle-group", Unit::count, "Number of the group of each mean angle.", numbered)
+        .metric("angle-replaced", Unit::boolean, "Whether the group of each mean angle was replaced.", numbered)
         .metric("area", Unit::area, "Area of the triangles with a point of a cloud, of each change.", numbered)
         .metric("volume-added", Unit::volume, "Volume inside the result and outside the model, of each change.",
                 numbered, headline)
         .metric("volume-removed", Unit::volume, "Volume inside the model and outside the result, of each change.",
                 numbered, headline)
         .metric("deviation", Unit::length, "Largest distance of a new point from the model, of each change.", numbered)
+        .metric("deviation-x", Unit::length, "World coordinate x of that point.", numbered)
+        .metric("deviation-y", Unit::length, "World coordinate y of that point.", numbered)
+        .metric("deviation-z", Unit::length, "World coordinate z of that point.", numbered)
+        .metric("change-cloud", Unit::count, "Number of the cloud of that point.", numbered)
         .metric("remeshed", Unit::count,
                 "New triangles without a point of a cloud: vertices of the model, joined anew.", smaller_is_better)
         .metric("loops", Unit::count, "Border loops of the clouds that were used.")

@@ -258,6 +258,12 @@ TEST(MeshUpdate, TwoCloudsAtOnce_LikeOneAfterTheOther) {
     EXPECT_EQ(both.replaced, 2);
     ASSERT_EQ(both.changes.size(), 2);
     EXPECT_NEAR(both.changes[0].deviation + both.changes[1].deviation, 11, 1e-9);
+    for (const MeshChange& change : both.changes) {
+        EXPECT_NEAR(change.position.z(), change.cloud == 1 ? 26 : 5, 1e-9);
+        EXPECT_NEAR(change.deviation, change.cloud == 1 ? 6 : 5, 1e-9);
+    }
+    ASSERT_EQ(both.angles.size(), 4);
+    for (const MeshUpdateAngle& angle : both.angles) EXPECT_EQ(angle.is_replaced, angle.mean < 1) << angle.group;
     EXPECT_EQ(both.groups, 3);
     EXPECT_EQ(positions(both.mesh), positions(second.mesh));
     EXPECT_EQ(triangles(both.mesh), triangles(second.mesh));
