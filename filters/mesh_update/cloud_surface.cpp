@@ -101,9 +101,11 @@ CloudSurface cloud_surface(const Buffer<Vec3>& positions, const Frame& frame, Co
     CloudSurface surface;
     surface.mesh = cocone(tets.tets, {}, context).mesh;
     const std::span<const u32> row_of = surface.mesh.vertex_columns.find(row_column)->values<u32>();
-    surface.rows.assign(row_of.begin(), row_of.end());
-    surface.mesh.positions = gather(positions, surface.rows);
+    surface.mesh.positions = gather(positions, row_of);
     surface.spacing = point_spacing(positions.span());
+    if (surface.spacing == 0)
+        throw Error("more than half of the {} points are duplicates, so the cloud has no spacing", positions.size())
+            .hint("give each scan once; voxel-thin removes duplicates");
     surface.paper_edges = edges_between_boundary_points(surface.mesh);
     choose_loops(surface, half_edges::opposites(surface.mesh));
     if (surface.loops.empty())

@@ -26,7 +26,6 @@ struct CloudLoop {
 struct CloudSurface {
     /// cocone()'s surface: vertices in the order of the cloud, without those in no triangle.
     TriangleMesh mesh;
-    Array<u32> rows;  ///< by vertex, its row in the cloud
     std::vector<CloudLoop> loops;  ///< those used, in the order of boundary_loops()
     std::size_t ignored_loops = 0;
     std::size_t boundary_edges = 0;  ///< edges in one triangle

@@ -47,9 +47,9 @@ Groups segmentation(const Model& model, std::span<const u8> is_overlap, Context&
     const std::size_t facets = is_overlap.size();
     groups.of_facet.assign(facets, Groups::overlap);
     std::vector<u32> lowest, queue;  // by group, its lowest vertex
+    std::size_t visited = 0;
     for (u32 seed = 0; seed < facets; ++seed) {
         if (is_overlap[seed] == 1 || groups.of_facet[seed] != Groups::overlap) continue;
-        context.check_cancelled();
         const std::int32_t group = static_cast<std::int32_t>(lowest.size());
         lowest.push_back(~u32(0));
         groups.of_facet[seed] = group;
@@ -57,6 +57,7 @@ Groups segmentation(const Model& model, std::span<const u8> is_overlap, Context&
         while (!queue.empty()) {
             const u32 facet = queue.back();
             queue.pop_back();
+            if ((++visited & 0xffff) == 0) context.check_cancelled();
             for (u32 h = 3 * facet; h < 3 * facet + 3; ++h) {
                 lowest.back() = std::min(lowest.back(), model.start(h));
                 const u32 next = model.opposite[h] / 3;
@@ -100,10 +101,11 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
     std::map<u32, Sum> sums;
     const auto position = [&](u32 h) { return cloud.mesh.positions[half_edges::start(cloud.mesh, h)]; };
     for (std::size_t i = 0; i < loops.size(); ++i) {
-        context.check_cancelled();
         std::map<u32, Sum> at_loop;
-        std::size_t edges = 0;  // that have an angle
+        std::size_t edges = 0, divided = 0;  // with an angle, with two or more
+        Vec3 undivided_at = Vec3::Zero();
         for (const EdgeOverlap& edge : loops[i].edges) {
+            context.check_cancelled();
             if (!edge.foot) continue;
             const Vec3 start = position(edge.half_edge), end = position(half_edges::after(edge.half_edge)),
                        apex = position(half_edges::before(edge.half_edge)), middle = (start + end) / 2;
@@ -121,15 +123,18 @@ CloudAngles mean_angles(const Model& model, const Groups& groups, const CloudSur
                     });
                 }
             edges += !nearest.empty();
+            divided += nearest.size() > 1;
+            if (nearest.size() == 1 && edges == divided + 1) undivided_at = middle;
             for (const auto& [group, best] : nearest) {
                 Sum& sum = at_loop[group];
                 sum.angles += dihedral_angle(start, end, apex, *edge.foot, model.mesh.positions[best.vertex]);
                 ++sum.edges;
             }
         }
-        const double least = least_group_share * static_cast<double>(edges);
-        const auto is_group = [&](const auto& entry) { return static_cast<double>(entry.second.edges) >= least; };
-        if (std::ranges::count_if(at_loop, is_group) < 2 && !result.undivided_loop) result.undivided_loop = i;
+        if (2 * divided < edges && !result.undivided_loop) {
+            result.undivided_loop = i;
+            result.undivided_at = undivided_at;
+        }
         for (const auto& [group, sum] : at_loop) {
             Sum& all = sums[group];
             all.angles += sum.angles;

@@ -46,8 +46,9 @@ inline constexpr double least_group_share = 0.5;
 
 struct CloudAngles {
     std::vector<GroupAngle> groups;  ///< those at the cloud's loops, ascending
-    /// A loop with one group only: no closed barrier, or one that does not divide the model.
+    /// The number of a loop that does not divide the model: most of its edges have one group on both sides.
     std::optional<std::size_t> undivided_loop;
+    Vec3 undivided_at = Vec3::Zero();  ///< the middle of its first such edge
 };
 
 /// At every boundary edge, each group has at most one angle: that of its vertex on the overlap facets of this edge that
@@ -62,8 +63,8 @@ struct Choice {
 };
 
 /// The groups that one cloud replaces. Of two groups, the one with the smaller mean angle; they must differ by more
-/// than `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°. Fragments do not
-/// count as groups here; those below 90° are replaced, too.
+/// than `gap`. Of more groups, those below 90°; no mean angle may be within half of `gap` of 90°. Fragments are
+/// replaced below 90°, whatever the gap.
 Choice chosen_groups(const CloudAngles& angles, double gap);
 
 /// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments,

@@ -13,6 +13,7 @@
 
 #include "cocone/peeling.hpp"
 #include "delaunay/delaunay.hpp"
+#include "mesh_update/nested_context.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
@@ -49,7 +50,7 @@ u64 reversed(u64 edge) { return edge >> 32 | edge << 32; }
 struct Given {
     const TriangleMesh& mesh;
     std::span<const u32> opposite;
-    const TriangleTree& tree;
+    const FacetTree& tree;
     std::span<const Vec3> points;
     std::span<const u32> discarded;
 
@@ -298,10 +299,7 @@ Array<Triangle> mended_boundary(const cocones::Diagram& diagram, Array<u8> label
 }
 
 NewSurface new_surface(const Given& given, const Region& region, const CoconeParams& params, Context& context) {
-    ContextOptions options;
-    options.threads = context.threads();
-    options.is_cancelled = [&] { return context.cancelled(); };
-    Context silent(std::move(options));
+    NestedContext silent(context);
     const TetMesh input = delaunay(points_of(given, region), {}, silent).tets;
     cocones::require_usable(input, params);
     const SpatialTets spatial = in_spatial_order(input, silent);
@@ -563,10 +561,10 @@ void check_intersections(const Given& given, const LocalRebuild& result, Context
 
 }  // namespace
 
-LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const TriangleTree& tree,
+LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
                              std::span<const Vec3> points, std::span<const LocalChange> changes,
                              std::span<const u32> discarded, const CoconeParams& params, Context& context) {
-    assert(opposite.size() == 3 * mesh.triangles.size() && tree.size() == mesh.triangles.size());
+    assert(opposite.size() == 3 * mesh.triangles.size());
     assert(std::ranges::is_sorted(discarded));
     const Given given{mesh, opposite, tree, points, discarded};
     const std::vector<Region> regions = regions_of(given, changes, context);
@@ -577,7 +575,6 @@ LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> oppo
         exchange.run(context);
         result.replaced.insert(result.replaced.end(), exchange.replaced.begin(), exchange.replaced.end());
         for (const u32 row : exchange.taken) result.triangles.push_back(surface.triangles[row]);
-        context.progress(0.9 * static_cast<double>(i + 1) / static_cast<double>(regions.size()));
     }
     std::ranges::sort(result.replaced);
     check_vertices(given, regions, result, context);
@@ -592,7 +589,6 @@ LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> oppo
             if (vertex >= given.first_point()) used.push_back(vertex - given.first_point());
     sort_unique(used);
     result.unused_points = given_points.size() - used.size();
-    context.progress(1);
     return result;
 }
 

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "cocone/cocone.hpp"
-#include "scanmill/geometry/spatial/triangle_tree.hpp"
+#include "mesh_update/model.hpp"
 
 namespace scanmill::updating {
 
@@ -68,7 +68,7 @@ struct LocalRebuild {
 /// the marks reach beyond the collar, and if the result would break a promise above. The hint is `rebuild: whole`.
 /// Cost: that of delaunay() and cocone() for the points of the changes and around them, and a search in `tree` for each
 ///       cube of three spacings there. Nothing is linear in the mesh.
-LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const TriangleTree& tree,
+LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
                              std::span<const Vec3> points, std::span<const LocalChange> changes,
                              std::span<const u32> discarded, const CoconeParams& params, Context& context);
 

@@ -7,13 +7,14 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
-#include "mesh_update/changes.hpp"
-#include "mesh_update/local_rebuild.hpp"
+#include "mesh_update/listed_changes.hpp"
+#include "mesh_update/nested_context.hpp"
+#include "mesh_update/rebuilt.hpp"
 #include "mesh_update/replacement.hpp"
 #include "mesh_update/resample.hpp"
 #include "mesh_update/updated_mesh.hpp"
-#include "mesh_update/whole_rebuild.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/statistics.hpp"
@@ -63,6 +64,8 @@ void require_parameters(const MeshUpdateParams& params) {
     require(params.max_distance.amount() > 0, "max-distance", params.max_distance.amount(), "above 0");
     require(params.trim >= 0 && std::isfinite(params.trim), "trim", params.trim, "0 or more");
     require(params.density > 0 && std::isfinite(params.density), "density", params.density, "above 0");
+    if (params.rebuild == MeshUpdateParams::Rebuild::local && params.noise != MeshUpdateParams::Noise::none)
+        throw Error("noise: big-balls has no effect with rebuild: local").hint("use `rebuild: whole`, or noise: none");
     const double gap = params.angle_gap.in_degrees();
     require(gap >= 0 && gap <= 90, "angle-gap", gap, "from 0 to 90 degrees");
 }
@@ -98,22 +101,19 @@ public:
     MeshUpdateResult run() {
         require_parameters(params_);
         require_inputs();
+        Array<u32> opposites = closed_opposites(given_);
         reconstruct_clouds();
         context_.progress(0.2);
         context_.metric("boundary-seconds", watch_.lap(), Unit::seconds);
-        Array<u32> opposites = closed_opposites(given_);
         double least = groups_[0].surface.spacing;
         for (const CloudGroup& group : groups_) least = std::min(least, group.surface.spacing);
-        const Resampled resampled = resample(params_.density * least);
+        const double longest = params_.density * least;
+        max_distance_ = resolved_max_distance(longest);
+        const Resampled resampled = resample(longest);
         result_.resampled = resampled.added;
         if (resampled.added > 0) opposites = half_edges::opposites(resampled.mesh);
         context_.check_cancelled();
-        const Model model(resampled.mesh, std::move(opposites), context_.threads());
-        max_distance_ =
-            params_.max_distance
-                .resolved({given_.frame.unit, [&] { return bounding_box(given_.positions.span()).diagonal(); },
-                           [&] { return edge_spacing(resampled.mesh); }})
-                .value();
+        const Model model(resampled.mesh, std::move(opposites), facet_tree(resampled.mesh, longest));
         refuse_intersections(model);
         context_.progress(0.3);
         context_.metric("model-seconds", watch_.lap(), Unit::seconds);
@@ -148,10 +148,43 @@ private:
             }
         }
         for (const auto& cloud : clouds_) result_.added += cloud->size();
+        require_points(given_.positions.size() + result_.added, "an update needs a model and a scan");
         std::vector<bool> is_used(given_.positions.size());
         for (const Triangle& t : given_.triangles)
             for (const u32 vertex : t) is_used[vertex] = true;
         result_.initial = static_cast<std::size_t>(std::ranges::count(is_used, true));
+    }
+
+    /// Edges of a CAD model are as long as its faces; once they are split, `longest` is the limit.
+    double resolved_max_distance(double longest) const {
+        const LengthScale scale{given_.frame.unit, [&] { return bounding_box(given_.positions.span()).diagonal(); },
+                                [&] { return std::min(edge_spacing(given_), longest); }};
+        return params_.max_distance.resolved(scale).value();
+    }
+
+    /// The local rebuild looks at facets near the clouds only. No point of a cloud that touches the model is farther
+    /// from it than the diagonal of the cloud's box.
+    FacetTree facet_tree(const TriangleMesh& mesh, double longest) const {
+        if (params_.rebuild == MeshUpdateParams::Rebuild::whole) return {mesh, context_.threads()};
+        std::vector<BoundingBox> boxes;
+        for (const CloudGroup& group : groups_) {
+            BoundingBox box = bounding_box(group.positions.span());
+            const Vec3 margin = Vec3::Constant(box.diagonal() + max_distance_ + resampling_reach * longest);
+            boxes.push_back({box.low - margin, box.high + margin});
+        }
+        const auto is_near = [&](const Triangle& t) {
+            BoundingBox own;
+            for (const u32 vertex : t) own.add(mesh.positions[vertex]);
+            return std::ranges::any_of(boxes, [&](const BoundingBox& box) {
+                return (own.low.array() <= box.high.array()).all() && (own.high.array() >= box.low.array()).all();
+            });
+        };
+        Array<u32> facets;
+        for (u32 facet = 0; facet < mesh.triangles.size(); ++facet)
+            if (is_near(mesh.triangles[facet])) facets.push_back(facet);
+        // Clouds far from the model are refused with their distance from it.
+        if (facets.empty()) return {mesh, context_.threads()};
+        return {mesh, std::move(facets), context_.threads()};
     }
 
     Resampled resample(double longest) {
@@ -173,7 +206,7 @@ private:
         if (params_.rebuild == MeshUpdateParams::Rebuild::local) return;
         const TriangleMesh& mesh = model.mesh;
         const SelfIntersections found =
-            self_intersections(mesh.positions.span(), mesh.triangles.span(), model.tree, context_, 1);
+            self_intersections(mesh.positions.span(), mesh.triangles.span(), model.tree.of_all(), context_, 1);
         if (found.count == 0) return;
         const u32 facet = found.pairs[0][0];
         throw Error("the model intersects itself: {} of triangles, the first at {}",
@@ -192,7 +225,7 @@ private:
         return fmt::format("clouds {} of {}", enumerated(numbers), clouds_.size());
     }
 
-    /// The positions of all clouds, one after another, relative to the model's origin.
+    /// Makes the surface of every cloud, and joins clouds whose loops come near each other.
     void reconstruct_clouds() {
         std::vector<CloudGroup> single;
         for (u32 i = 0; i < clouds_.size(); ++i) {
@@ -232,7 +265,8 @@ private:
     }
 
     CloudSurface surface_of(const CloudGroup& group) {
-        NestedContext nested(context_);
+        const double done = static_cast<double>(group.numbers[0]) / static_cast<double>(clouds_.size());
+        NestedContext nested(context_, 0.2 * done, 0.2 * (done + 1 / static_cast<double>(clouds_.size())));
         try {
             return cloud_surface(group.positions, given_.frame, nested);
         } catch (Error& error) {
@@ -267,13 +301,14 @@ private:
     }
 
     void find_overlaps(const Model& model) {
+        std::optional<CandidateFacets> candidates;
+        if (params_.overlap == MeshUpdateParams::Overlap::candidates) candidates.emplace(model, context_.threads());
         for (CloudGroup& group : groups_) {
             std::vector<CloudLoop> used;
             for (CloudLoop& loop : group.surface.loops) {
                 LoopOverlap overlap = overlap_of(model, group.surface, loop, max_distance_, context_);
                 if (!lies_on_model(group, loop, overlap)) continue;
-                if (params_.overlap == MeshUpdateParams::Overlap::candidates)
-                    add_candidates(model, group.surface, loop, max_distance_, overlap, context_);
+                if (candidates) candidates->add(group.surface, loop, max_distance_, overlap);
                 used.push_back(std::move(loop));
                 group.loops.push_back(std::move(overlap));
             }
@@ -344,6 +379,7 @@ private:
         is_replaced_.assign(segmentation_.count, false);
         std::vector<const CloudGroup*> keeper(segmentation_.count, nullptr);
         std::vector<const CloudGroup*> replacer(segmentation_.count, nullptr);
+        std::vector<u32> fragments;
         for (CloudGroup& group : groups_) {
             if (group.loops.empty()) {
                 doubt("hanging", group, group.positions[0], "none of its loops lies on the model",
@@ -353,7 +389,7 @@ private:
             group.angles = mean_angles(model, segmentation_, group.surface, group.loops, context_);
             if (group.angles.undivided_loop) {
                 const CloudLoop& loop = group.surface.loops[*group.angles.undivided_loop];
-                doubt("no separation", group, loop_start(group, loop),
+                doubt("no separation", group, group.angles.undivided_at,
                       fmt::format("a loop of {} edges does not divide the model", loop.half_edges.size()),
                       "the border of the cloud must surround the change on the model; a scan on both sides of a handle "
                       "does not");
@@ -363,13 +399,17 @@ private:
                 doubt("ambiguous", group, loop_start(group, group.surface.loops[0]), choice.ambiguity,
                       "the scan must overlap the unchanged model by several spacings along its whole border");
             for (const GroupAngle& angle : group.angles.groups) {
-                // Fragments between two barriers belong to neither cloud.
-                if (angle.share < least_group_share) continue;
                 const bool is_chosen = std::ranges::binary_search(choice.replaced, angle.group);
-                (is_chosen ? replacer : keeper)[angle.group] = &group;
+                if (angle.share >= least_group_share)
+                    (is_chosen ? replacer : keeper)[angle.group] = &group;
+                else if (is_chosen)
+                    fragments.push_back(angle.group);
                 if (is_chosen) is_replaced_[angle.group] = true;
             }
         }
+        // A fragment of one cloud may be a group of another.
+        for (const u32 fragment : fragments)
+            if (keeper[fragment]) is_replaced_[fragment] = replacer[fragment] != nullptr;
         for (std::size_t g = 0; g < segmentation_.count; ++g)
             if (keeper[g] && replacer[g])
                 doubt("ambiguous", *replacer[g], loop_start(*replacer[g], replacer[g]->surface.loops[0]),
@@ -380,20 +420,21 @@ private:
             for (const GroupAngle& angle : group.angles.groups)
                 result_.angles.push_back(
                     {group.numbers[0] + 1, angle.group + 1, angle.mean, bool(is_replaced_[angle.group])});
-        require_kept_groups();
+        require_kept_groups(model);
     }
 
     /// Something must stay in every component of the model that loses a group.
-    void require_kept_groups() {
+    void require_kept_groups(const Model& model) {
         if (!result_.doubt.empty()) return;
-        for (u32 g = 0; g < segmentation_.count; ++g) {
-            const auto same = [&](u32 other) { return segmentation_.component[other] == segmentation_.component[g]; };
-            bool keeps = !is_replaced_[g];
-            for (u32 other = 0; other < segmentation_.count; ++other) keeps |= same(other) && !is_replaced_[other];
-            if (!keeps)
-                throw Error("the clouds replace all {} of a component of the model",
-                            count_text(segmentation_.count, "group", "groups"))
-                    .hint("a scan of the whole object needs no model: use delaunay and tight-cocone");
+        std::vector<bool> keeps(segmentation_.count, false);
+        for (u32 g = 0; g < segmentation_.count; ++g)
+            if (!is_replaced_[g]) keeps[segmentation_.component[g]] = true;
+        for (u32 facet = 0; facet < segmentation_.of_facet.size(); ++facet) {
+            const std::int32_t group = segmentation_.of_facet[facet];
+            if (group == Groups::overlap || keeps[segmentation_.component[static_cast<std::size_t>(group)]]) continue;
+            throw Error("the clouds replace all of the component of the model at {}",
+                        position_text(model.corners(facet)[0], given_.frame))
+                .hint("a scan of the whole object needs no model: use delaunay and tight-cocone");
         }
     }
 
@@ -402,13 +443,14 @@ private:
     }
 
     void discard_vertices(const Model& model) {
-        discarded_ = vertices_of_groups(model, segmentation_, is_replaced_);
+        const Array<u8> of_groups = vertices_of_groups(model, segmentation_, is_replaced_);
+        discarded_ = of_groups;
         for (const CloudGroup& group : groups_) {
             const PointTree tree(group.positions.span(), context_.threads());
             std::vector<u32> overlap;
             for (const LoopOverlap& loop : group.loops)
                 overlap.insert(overlap.end(), loop.facets.begin(), loop.facets.end());
-            discard_under(model, overlap, group.surface, tree, params_.trim, discarded_, context_);
+            discard_under(model, overlap, group.surface, tree, params_.trim, of_groups, discarded_, context_);
         }
     }
 
@@ -446,147 +488,45 @@ private:
             if (is_used[vertex]) (discarded_[vertex] == 1 ? discarded : rows).push_back(vertex);
         result_.discarded = discarded.size();
         result_.kept = rows.size();
-        const bool is_local = params_.rebuild == MeshUpdateParams::Rebuild::local;
         Array<Vec3> all(model.mesh.positions.begin(), model.mesh.positions.end());
         all.insert(all.end(), positions_.begin(), positions_.end());
-        for (u32 i = 0; i < positions_.size(); ++i) rows.push_back(static_cast<u32>(model_vertices + i));
+        for (std::size_t i = model_vertices; i < all.size(); ++i) rows.push_back(static_cast<u32>(i));
         const Rebuilt rebuilt =
-            is_local ? rebuild_local(model, rows, discarded)
-                     : rebuild_whole(all, given_.frame, rows, model.mesh.triangles.size(), params_, context_);
+            params_.rebuild == MeshUpdateParams::Rebuild::whole
+                ? rebuild_whole(model, all, rows, params_, context_)
+                : rebuild_around(model, all, rows, discarded, segmentation_, parts(), params_, context_);
+        context_.progress(0.9);
         result_.unused = result_.kept + result_.added - rebuilt.rows.size();
         const Difference changed = difference(model.mesh, rebuilt);
         result_.mesh = updated_mesh(model, clouds_, all, segmentation_, rebuilt, changed.is_new, context_);
         result_.updated = true;
-        list_changes(model, rebuilt, changed);
-        doubt_result(model);
+        list_changes(model, rebuilt, changed, result_, context_);
+        doubt_points(rebuilt, model_vertices);
+        doubt_topology(model);
+        doubt_distance(model, changed);
     }
 
-    /// `rows`: of kept vertices and points, ascending.
-    Rebuilt rebuild_local(const Model& model, std::span<const u32> rows, std::span<const u32> discarded) {
-        const u32 model_vertices = static_cast<u32>(model.mesh.positions.size());
-        const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree, positions_,
-                                                  local_changes(model), discarded, params_, context_);
-        std::vector<u32> number(model_vertices + positions_.size(), half_edges::boundary);
-        std::vector<bool> is_gone(number.size());
-        for (const u32 vertex : part.dropped) is_gone[vertex] = true;
-        std::vector<bool> is_point_used(positions_.size());
-        for (const Triangle& t : part.triangles)
-            for (const u32 vertex : t)
-                if (vertex >= model_vertices) is_point_used[vertex - model_vertices] = true;
-        Rebuilt rebuilt;
-        for (const u32 row : rows) {
-            if (is_gone[row] || (row >= model_vertices && !is_point_used[row - model_vertices])) continue;
-            number[row] = static_cast<u32>(rebuilt.rows.size());
-            rebuilt.rows.push_back(row);
-        }
-        const auto add = [&](const Triangle& t) {
-            rebuilt.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-        };
-        rebuilt.replaced.assign(part.replaced.begin(), part.replaced.end());
-        rebuilt.triangles.reserve(model.mesh.triangles.size() - part.replaced.size() + part.triangles.size());
-        auto replaced = part.replaced.begin();
-        for (u32 facet = 0; facet < model.mesh.triangles.size(); ++facet)
-            if (replaced != part.replaced.end() && *replaced == facet)
-                ++replaced;
-            else
-                add(model.mesh.triangles[facet]);
-        rebuilt.fixed = rebuilt.triangles.size();
-        for (const Triangle& t : part.triangles) add(t);
-        return rebuilt;
+    std::vector<CloudPart> parts() const {
+        std::vector<CloudPart> parts;
+        for (const CloudGroup& group : groups_) parts.push_back({group.loops, group.rows, group.surface.spacing});
+        return parts;
     }
 
-    /// The facets that go, divided among the clouds: connected facets go together, and so do all those of a cloud.
-    std::vector<LocalChange> local_changes(const Model& model) const {
-        std::vector<u32> removed;
-        std::vector<u8> is_removed(model.mesh.triangles.size(), u8(0));
-        for (u32 facet = 0; facet < is_removed.size(); ++facet) {
-            const Triangle& t = model.mesh.triangles[facet];
-            if (segmentation_.of_facet[facet] != Groups::overlap &&
-                discarded_[t[0]] + discarded_[t[1]] + discarded_[t[2]] == 0)
-                continue;
-            is_removed[facet] = 1;
-            removed.push_back(facet);
-        }
-        DisjointSets facets(removed.size()), clouds(groups_.size());
-        const auto index_of = [&](u32 facet) {
-            return static_cast<u32>(std::ranges::lower_bound(removed, facet) - removed.begin());
-        };
-        for (u32 i = 0; i < removed.size(); ++i)
-            for (u32 h = 3 * removed[i]; h < 3 * removed[i] + 3; ++h)
-                if (const u32 beside = model.opposite[h] / 3; is_removed[beside] == 1)
-                    facets.unite(i, index_of(beside));
-        std::vector<u32> cloud_of(removed.size(), half_edges::boundary);
-        for (u32 g = 0; g < groups_.size(); ++g)
-            for (const LoopOverlap& loop : groups_[g].loops)
-                for (const u32 facet : loop.facets) {
-                    u32& cloud = cloud_of[facets.find(index_of(facet))];
-                    if (cloud == half_edges::boundary)
-                        cloud = g;
-                    else
-                        clouds.unite(cloud, g);
-                }
-        std::vector<LocalChange> changes(groups_.size());
-        for (u32 i = 0; i < removed.size(); ++i)
-            if (const u32 cloud = cloud_of[facets.find(i)]; cloud != half_edges::boundary)
-                changes[clouds.find(cloud)].removed.push_back(removed[i]);
-        for (u32 g = 0; g < groups_.size(); ++g) {
-            LocalChange& change = changes[clouds.find(g)];
-            change.points.insert(change.points.end(), groups_[g].rows.begin(), groups_[g].rows.end());
-            change.spacing = std::max(change.spacing, groups_[g].surface.spacing);
-        }
-        std::erase_if(changes, [](const LocalChange& change) { return change.points.empty(); });
-        return changes;
-    }
-
-    void list_changes(const Model& model, const Rebuilt& rebuilt, const Difference& difference) {
-        const TriangleMesh& mesh = result_.mesh;
-        const std::size_t model_vertices = model.mesh.positions.size();
-        std::vector<Triangle> before, after;
-        for (const u32 facet : difference.old_facets) before.push_back(model.mesh.triangles[facet]);
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-            if (difference.is_new[i] == 1) after.push_back(mesh.triangles[i]);
-        std::vector<u32> common;
-        for (const u32 row : rebuilt.rows) common.push_back(row < model_vertices ? row : no_common_vertex);
-        const std::span<const u32> source = mesh.vertex_columns.find("source")->values<u32>();
-        u32 hint = NearestTriangle::none;
-        for (const Change& change : updating::changes({model.mesh.positions.span(), before},
-                                                      {mesh.positions.span(), after}, common, context_)) {
-            MeshChange listed;
-            listed.volume_added = change.volume_added;
-            listed.volume_removed = change.volume_removed;
-            double squared = -1;
-            for (const u32 triangle : change.new_triangles) {
-                bool has_points = false;
-                for (const u32 vertex : after[triangle]) {
-                    if (common[vertex] != no_common_vertex) continue;
-                    has_points = true;
-                    const NearestTriangle nearest = model.tree.nearest(mesh.positions[vertex], hint);
-                    hint = nearest.slot;
-                    if (nearest.squared_distance <= squared) continue;
-                    squared = nearest.squared_distance;
-                    listed.position = mesh.positions[vertex];
-                    listed.cloud = source[vertex];
-                }
-                if (has_points)
-                    listed.area += area_vector(mesh.positions.span(), after[triangle]).norm() / 2;
-                else
-                    ++result_.remeshed;
-            }
-            listed.deviation = std::sqrt(std::max(squared, 0.0));
-            if (listed.area > 0) result_.changes.push_back(listed);
-        }
-        doubt_distance(model, difference, after);
-    }
-
-    /// Doubts a result that is not the rest of the model joined with the surfaces of the clouds.
-    void doubt_result(const Model& model) {
-        if (static_cast<double>(result_.unused) > most_unused * static_cast<double>(result_.added))
-            context_.doubt(fmt::format("{} kept vertices and points of the clouds are not on the surface: the clouds "
-                                       "are noisy, or not registered with the model",
-                                       result_.unused),
+    void doubt_points(const Rebuilt& rebuilt, std::size_t model_vertices) {
+        if (params_.noise == MeshUpdateParams::Noise::big_balls) return;  // leaves points out by design
+        const auto first = std::ranges::lower_bound(rebuilt.rows, static_cast<u32>(model_vertices));
+        const std::size_t unused = result_.added - static_cast<std::size_t>(rebuilt.rows.end() - first);
+        if (static_cast<double>(unused) > most_unused * static_cast<double>(result_.added))
+            context_.doubt(fmt::format("{} of {} points of the clouds are not on the surface: they are noisy, or not "
+                                       "registered with the model",
+                                       unused, result_.added),
                            "mesh");
-        // The surface of a noisy cloud has pinholes, and handles beside them; the rest of it is then taken for a
-        // sphere.
+    }
+
+    /// Doubts a result that is not topologically the rest of the model joined with the surfaces of the clouds. The
+    /// surface of a noisy cloud has pinholes, and handles beside them; it may then also be a sphere with its loops cut
+    /// out.
+    void doubt_topology(const Model& model) {
         long expected = euler_of_rest(model, segmentation_, is_replaced_), without_handles = expected;
         for (const CloudGroup& group : groups_) {
             const CloudEuler found = euler_of(group.surface);
@@ -603,45 +543,25 @@ private:
                            "mesh");
     }
 
-    /// Doubts new triangles away from everything that was given. `after`: the new triangles.
-    void doubt_distance(const Model& model, const Difference& difference, std::span<const Triangle> after) {
-        Array<Vec3> positions;
-        Array<Triangle> given;
+    void doubt_distance(const Model& model, const Difference& changed) {
+        std::vector<const CloudSurface*> surfaces;
         double spacing = 0;
         for (const CloudGroup& group : groups_) {
-            const u32 first = static_cast<u32>(positions.size());
-            positions.insert(positions.end(), group.surface.mesh.positions.begin(), group.surface.mesh.positions.end());
-            for (const Triangle& t : group.surface.mesh.triangles)
-                given.push_back({first + t[0], first + t[1], first + t[2]});
+            surfaces.push_back(&group.surface);
             spacing = std::max(spacing, group.surface.spacing);
         }
-        for (const u32 facet : difference.old_facets) {
-            const std::int32_t group = segmentation_.of_facet[facet];
-            if (group != Groups::overlap && is_replaced_[static_cast<std::size_t>(group)]) continue;
-            const u32 first = static_cast<u32>(positions.size());
-            for (const Vec3& corner : model.corners(facet)) positions.push_back(corner);
-            given.push_back({first, first + 1, first + 2});
-        }
-        const TriangleTree tree(positions, given, context_.threads());
-        const std::span<const Vec3> vertices = result_.mesh.positions.span();
-        double far = 0, all = 0;
-        u32 hint = NearestTriangle::none;
-        for (const Triangle& t : after) {
-            const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
-            const double area = area_vector(a, b, c).norm() / 2;
-            all += area;
-            for (const Vec3& point : {Vec3((a + b + c) / 3), Vec3((a + b) / 2), Vec3((b + c) / 2), Vec3((c + a) / 2)})
-                if (!tree.is_within(point, spacing * spacing, hint)) {
-                    far += area;
-                    break;
-                }
-        }
-        if (far > most_far * all)
-            context_.doubt(
-                fmt::format("{:.2g} % of the new surface is farther than {:.4g} {}, the spacing of the cloud, "
-                            "from the surfaces of the clouds and from what was kept",
-                            100 * far / all, spacing, symbol(given_.frame.unit)),
-                "mesh");
+        std::vector<u32> kept;
+        for (const u32 facet : changed.old_facets)
+            if (const std::int32_t group = segmentation_.of_facet[facet];
+                group == Groups::overlap || !is_replaced_[static_cast<std::size_t>(group)])
+                kept.push_back(facet);
+        const double share = far_share(model, kept, surfaces, result_.mesh, changed.is_new, spacing, context_);
+        if (share > most_far)
+            context_.doubt(fmt::format("{:.2g} % of the new surface is farther than {:.4g} {}, the spacing of the {}, "
+                                       "from the clouds and from what was kept",
+                                       100 * share, spacing, symbol(given_.frame.unit),
+                                       groups_.size() == 1 ? "cloud" : "coarsest cloud"),
+                           "mesh");
     }
 
     /// Returns the given model with the columns of an update.
@@ -652,7 +572,7 @@ private:
         const Array<u8> would_go = vertices_of_groups(model, segmentation_, is_replaced_);
         result_.mesh = kept_mesh(given_, model, segmentation_, would_go, context_);
         result_.kept = result_.initial;
-        result_.added = result_.resampled = 0;
+        result_.added = result_.resampled = result_.replaced = 0;
     }
 
     void report() {

@@ -57,9 +57,26 @@ Array<u32> closed_opposites(const TriangleMesh& mesh) {
     return opposite;
 }
 
-Model::Model(const TriangleMesh& given, Array<u32> opposites, unsigned threads)
-    : mesh(given),
-      opposite(std::move(opposites)),
-      tree(given.positions.span(), given.triangles.span(), threads) {}
+namespace {
+
+Array<Triangle> gathered(std::span<const Triangle> triangles, std::span<const u32> rows) {
+    Array<Triangle> found;
+    found.reserve(rows.size());
+    for (const u32 row : rows) found.push_back(triangles[row]);
+    return found;
+}
+
+}  // namespace
+
+FacetTree::FacetTree(const TriangleMesh& mesh, Array<u32> facets, unsigned threads)
+    : facets_(std::move(facets)),
+      tree_(mesh.positions.span(), gathered(mesh.triangles.span(), facets_), threads) {}
+
+void FacetTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
+    const std::size_t before = rows.size();
+    tree_.meeting(box, rows);
+    if (facets_.empty()) return;
+    for (std::size_t i = before; i < rows.size(); ++i) rows[i] = facets_[rows[i]];
+}
 
 }  // namespace scanmill::updating

@@ -11,17 +11,43 @@
 
 namespace scanmill::updating {
 
+/// A search tree over facets of a mesh: all of them, or those in a region.
+class FacetTree {
+public:
+    /// Pre: at least one facet.
+    FacetTree(const TriangleMesh& mesh, unsigned threads)
+        : tree_(mesh.positions.span(), mesh.triangles.span(), threads) {}
+    /// `facets`: rows of the facets in the tree, ascending.
+    FacetTree(const TriangleMesh& mesh, Array<u32> facets, unsigned threads);
+
+    /// As TriangleTree::nearest(); `triangle` is the row in the mesh.
+    NearestTriangle nearest(const Vec3& point, u32 hint) const {
+        NearestTriangle found = tree_.nearest(point, hint);
+        if (!facets_.empty()) found.triangle = facets_[found.triangle];
+        return found;
+    }
+    Vec3 nearest_point(const Vec3& point, u32 slot) const { return tree_.nearest_point(point, slot); }
+    /// As TriangleTree::meeting(), with rows in the mesh.
+    void meeting(const BoundingBox& box, Array<u32>& rows) const;
+    /// Pre: the tree contains all facets.
+    const TriangleTree& of_all() const { return tree_; }
+
+private:
+    Array<u32> facets_;  ///< by triangle of the tree, its row in the mesh; empty if the tree contains all facets
+    TriangleTree tree_;
+};
+
 /// half_edges::opposites(mesh). Throws Error for a mesh that is open, not a manifold or inside out, with the position
 /// of the first defect. Cost: linear.
 Array<u32> closed_opposites(const TriangleMesh& mesh);
 
 /// A closed mesh with its half-edges and a tree over its facets.
 struct Model {
-    /// Pre: `opposites` are closed_opposites(given), and the mesh outlives this object. Cost: O(F log F); about 130
-    /// bytes per triangle.
-    Model(const TriangleMesh& given, Array<u32> opposites, unsigned threads);
-    Model(const TriangleMesh& given, const Context& context)
-        : Model(given, closed_opposites(given), context.threads()) {}
+    /// Pre: `opposites` are closed_opposites(given), and the mesh outlives this object.
+    Model(const TriangleMesh& given, Array<u32> opposites, FacetTree facets)
+        : mesh(given),
+          opposite(std::move(opposites)),
+          tree(std::move(facets)) {}
     Model(const Model&) = delete;
 
     std::array<Vec3, 3> corners(u32 facet) const {
@@ -41,7 +67,7 @@ struct Model {
 
     const TriangleMesh& mesh;
     Array<u32> opposite;  ///< half_edges::opposites(mesh)
-    TriangleTree tree;
+    FacetTree tree;
 };
 
 /// "(1.5, 2, 3)", in world coordinates, for messages.

@@ -122,6 +122,7 @@ LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const Clou
     const auto start = [&](u32 h) { return cloud.mesh.positions[half_edges::start(cloud.mesh, h)]; };
     std::vector<Hit> hits;
     for (const u32 h : loop.half_edges) {
+        context.check_cancelled();
         const Vec3 point = start(h);
         hits.push_back(tracer.nearest(point));
         const Hit& hit = hits.back();
@@ -137,7 +138,6 @@ LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const Clou
         // Beside an edge or a vertex, the nearest point is not the foot on the plane.
         result.offsets.push_back(projection.is_inside ? std::abs(projection.distance) : hit.distance);
     }
-    context.check_cancelled();
     // The facet before each boundary point that has one, so that the barrier is closed where points hang.
     std::optional<std::size_t> first;
     for (std::size_t i = 0; i < hits.size() && !first; ++i)
@@ -167,21 +167,39 @@ LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const Clou
     return result;
 }
 
-void add_candidates(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
-                    LoopOverlap& overlap, Context& context) {
-    const TriangleTree vertices = tree_of_points(model.mesh.positions.span(), context.threads());
-    std::vector<u32> corner_at(model.mesh.positions.size(), half_edges::boundary);
-    for (u32 h = static_cast<u32>(model.opposite.size()); h-- > 0;) corner_at[model.start(h)] = h;
+namespace {
+
+/// One half-edge at each vertex that is in a triangle, by vertex.
+Array<u32> half_edges_by_vertex(const Model& model) {
+    Array<u32> at(model.mesh.positions.size(), half_edges::boundary);
+    for (u32 h = 0; h < model.opposite.size(); ++h) at[model.start(h)] = h;
+    std::erase(at, half_edges::boundary);
+    return at;
+}
+
+Array<Vec3> starts_of(const Model& model, std::span<const u32> half_edges) {
+    Array<Vec3> positions;
+    for (const u32 h : half_edges) positions.push_back(model.mesh.positions[model.start(h)]);
+    return positions;
+}
+
+}  // namespace
+
+CandidateFacets::CandidateFacets(const Model& model, unsigned threads)
+    : model_(model),
+      corners_(half_edges_by_vertex(model)),
+      vertices_(tree_of_points(starts_of(model, corners_), threads)) {}
+
+void CandidateFacets::add(const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
+                          LoopOverlap& overlap) const {
     std::vector<u32> before;  // of the edge's start, once its end is looked at
     const std::size_t count = loop.half_edges.size();
     for (std::size_t k = 0; k <= count; ++k) {
         const u32 h = loop.half_edges[k % count];
         std::vector<u32> around;
-        const Vec3& point = cloud.mesh.positions[half_edges::start(cloud.mesh, h)];
-        const NearestTriangle nearest = vertices.nearest(point);
-        if (nearest.squared_distance <= max_distance * max_distance &&
-            corner_at[nearest.triangle] != half_edges::boundary)
-            model.for_each_around(corner_at[nearest.triangle], [&](u32 corner) { around.push_back(corner / 3); });
+        const NearestTriangle nearest = vertices_.nearest(cloud.mesh.positions[half_edges::start(cloud.mesh, h)]);
+        if (nearest.squared_distance <= max_distance * max_distance)
+            model_.for_each_around(corners_[nearest.triangle], [&](u32 corner) { around.push_back(corner / 3); });
         if (k > 0) {
             std::vector<u32>& facets = overlap.edges[k - 1].facets;
             facets.insert(facets.end(), before.begin(), before.end());

@@ -28,8 +28,8 @@ Projection project(const Vec3& point, const std::array<Vec3, 3>& facet);
 /// A boundary edge of a cloud on the model.
 struct EdgeOverlap {
     u32 half_edge;  ///< in the cloud's surface
-    /// Facets from that under the edge's start to that under its end, each with an edge in common with one before it;
-    /// without repeats. Empty if no facet is under an end.
+    /// Facets that connect the one under the edge's start with the one under its end, over edges; ascending. Where
+    /// points hang, those up to the next point with a facet belong to the last edge before. Empty if its start hangs.
     std::vector<u32> facets;
     /// Nearest point of the model to the middle of the edge; absent if farther than max_distance.
     std::optional<Vec3> foot;
@@ -50,8 +50,19 @@ struct LoopOverlap {
 LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
                        Context& context);
 
-/// Adds all facets at the model's vertices nearest to the loop's boundary points: the paper's thick border.
-void add_candidates(const Model& model, const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
-                    LoopOverlap& overlap, Context& context);
+/// The paper's thick border: all facets at the model's vertices nearest to boundary points.
+class CandidateFacets {
+public:
+    /// Pre: the model outlives this object. Cost: O(n log n).
+    CandidateFacets(const Model& model, unsigned threads);
+
+    /// Adds the facets to those of the loop's edges. Ties: the lowest vertex.
+    void add(const CloudSurface& cloud, const CloudLoop& loop, double max_distance, LoopOverlap& overlap) const;
+
+private:
+    const Model& model_;
+    Array<u32> corners_;  ///< by vertex in a triangle, a half-edge that starts there
+    TriangleTree vertices_;  ///< of these vertices
+};
 
 }  // namespace scanmill::updating

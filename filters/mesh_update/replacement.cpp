@@ -38,7 +38,8 @@ Array<u8> vertices_of_groups(const Model& model, const Groups& groups, const std
 }
 
 void discard_under(const Model& model, std::span<const u32> overlap, const CloudSurface& surface,
-                   const PointTree& cloud, double trim, std::span<u8> discarded, Context& context) {
+                   const PointTree& cloud, double trim, std::span<const u8> before, std::span<u8> discarded,
+                   Context& context) {
     const TriangleMesh& mesh = model.mesh;
     const TriangleTree tree(surface.mesh.positions.span(), surface.mesh.triangles.span(), context.threads());
     const TriangleTree loops = loop_tree(surface, context.threads());
@@ -62,15 +63,16 @@ void discard_under(const Model& model, std::span<const u32> overlap, const Cloud
         if ((i & 0x3ff) == 0) context.check_cancelled();
         const u32 vertex = model.start(corners[i]);
         const Vec3& position = mesh.positions[vertex];
-        if (discarded[vertex] == 1) continue;
+        if (before[vertex] == 1) continue;
+        bool goes = false;
         if (i < on_overlap) {
             const NearestTriangle nearest = tree.nearest(position, hint);
             hint = nearest.slot;
             const Vec3 foot = tree.nearest_point(position, nearest.slot);
-            discarded[vertex] = loops.nearest(foot).squared_distance > near * near;
+            goes = loops.nearest(foot).squared_distance > near * near;
         }
-        if (discarded[vertex] == 0 && is_beside_point(position)) discarded[vertex] = 1;
-        if (discarded[vertex] == 0) continue;
+        if (!goes && !is_beside_point(position)) continue;
+        discarded[vertex] = 1;
         model.for_each_around(corners[i], [&](u32 around) {
             const u32 next = half_edges::after(around);
             if (seen.insert(model.start(next)).second) corners.push_back(next);

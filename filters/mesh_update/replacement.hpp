@@ -21,8 +21,10 @@ Array<u8> vertices_of_groups(const Model& model, const Groups& groups, const std
 /// those nearer to a point of the cloud than `trim` times the local spacing there, the mean distance of the point to
 /// its six nearest ones.
 ///
-/// Pre: `overlap` are the cloud's overlap facets. Cost: one search in the cloud for each vertex of the overlap facets.
+/// `before`: the marks of vertices_of_groups(). Pre: `overlap` are the cloud's overlap facets. Cost: one search in the
+/// cloud for each vertex of the overlap facets.
 void discard_under(const Model& model, std::span<const u32> overlap, const CloudSurface& surface,
-                   const PointTree& cloud, double trim, std::span<u8> discarded, Context& context);
+                   const PointTree& cloud, double trim, std::span<const u8> before, std::span<u8> discarded,
+                   Context& context);
 
 }  // namespace scanmill::updating

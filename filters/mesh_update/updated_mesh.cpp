@@ -28,6 +28,16 @@ Array<std::int32_t> group_numbers(const Model& model, const Groups& groups) {
     return numbers;
 }
 
+/// The vertices, without the columns that an earlier update added and that this one adds again.
+PointCloud vertices_of(const TriangleMesh& mesh) {
+    PointCloud points = points_of(mesh);
+    ColumnTable columns;
+    for (const Column& column : points.columns)
+        if (column.name() != "group" && column.name() != "replaced") columns.add(column);
+    points.columns = std::move(columns);
+    return points;
+}
+
 /// Adds the columns of all vertices of an update.
 void add_columns(TriangleMesh& mesh, Array<std::int32_t> groups, Array<u8> replaced, Array<u8> updated,
                  Context& context) {
@@ -90,11 +100,11 @@ TriangleMesh updated_mesh(const Model& model, std::span<const std::shared_ptr<co
     for (const u32 row : rebuilt.rows) placed.push_back(positions[row]);
     mesh.positions = std::move(placed);
     mesh.triangles = rebuilt.triangles;
-    std::vector<std::shared_ptr<const PointCloud>> all{std::make_shared<const PointCloud>(points_of(model.mesh))};
+    std::vector<std::shared_ptr<const PointCloud>> all{std::make_shared<const PointCloud>(vertices_of(model.mesh))};
     all.insert(all.end(), clouds.begin(), clouds.end());
     mesh.vertex_columns = merging::merged_columns(all, {}, context).gather(rebuilt.rows);
-    warn_of_dropped(model.mesh.face_columns, "face columns are", "the triangles are new", context);
-    warn_of_dropped(model.mesh.edge_columns, "edge columns are", "the edges are new", context);
+    warn_of_dropped(model.mesh.face_columns, "face columns are", "new triangles have no values", context);
+    warn_of_dropped(model.mesh.edge_columns, "edge columns are", "new edges have no values", context);
     const Array<std::int32_t> numbers = group_numbers(model, groups);
     Array<std::int32_t> group;
     for (const u32 row : rebuilt.rows) group.push_back(row < numbers.size() ? numbers[row] : Groups::overlap);
@@ -109,7 +119,7 @@ TriangleMesh kept_mesh(const TriangleMesh& given, const Model& model, const Grou
     TriangleMesh mesh = given;
     const std::size_t vertices = given.positions.size();
     // Resampling appends vertices.
-    const std::array<std::shared_ptr<const PointCloud>, 1> all{std::make_shared<const PointCloud>(points_of(given))};
+    const std::array<std::shared_ptr<const PointCloud>, 1> all{std::make_shared<const PointCloud>(vertices_of(given))};
     mesh.vertex_columns = merging::merged_columns(all, {}, context);
     Array<std::int32_t> numbers = group_numbers(model, groups);
     numbers.resize(vertices);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "mesh_update/groups.hpp"
-#include "mesh_update/whole_rebuild.hpp"
+#include "mesh_update/rebuilt.hpp"
 
 namespace scanmill::updating {
 

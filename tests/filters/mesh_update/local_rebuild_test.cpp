@@ -37,11 +37,11 @@ struct Model {
         : mesh(
               soup({given.positions.begin(), given.positions.end()}, {given.triangles.begin(), given.triangles.end()})),
           opposite(half_edges::opposites(mesh)),
-          tree(mesh.positions.span(), mesh.triangles.span(), 2) {}
+          tree(mesh, 2) {}
 
     TriangleMesh mesh;
     Array<u32> opposite;
-    TriangleTree tree;
+    updating::FacetTree tree;
 };
 
 double median_distance(std::span<const Vec3> points) {

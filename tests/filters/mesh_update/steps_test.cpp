@@ -123,7 +123,7 @@ TEST(AngleCondition, FragmentsDoNotCountAsGroups) {
 struct TopOfABlock : testing::Test {
     Context context;
     TriangleMesh mesh = resampled(block(), 4, {}, context).mesh;
-    Model model{mesh, context};
+    Model model{mesh, closed_opposites(mesh), FacetTree(mesh, 1)};
     CloudSurface cloud = cloud_surface(step_cloud({20, 10, 40, 30}, 20, 0, 4, 1)->positions, {}, context);
 };
 
@@ -156,7 +156,7 @@ TEST_F(TopOfABlock, OverlapFacetsAreUnderTheBorder_AndDivideTheModelInTwo) {
 TEST_F(TopOfABlock, CandidatesAreASuperset) {
     const LoopOverlap projected = overlap_of(model, cloud, cloud.loops[0], 3, context);
     LoopOverlap candidates = projected;
-    add_candidates(model, cloud, cloud.loops[0], 3, candidates, context);
+    CandidateFacets(model, 1).add(cloud, cloud.loops[0], 3, candidates);
     EXPECT_GT(candidates.facets.size(), projected.facets.size());
     EXPECT_THAT(projected.facets, IsSubsetOf(candidates.facets));
 }
@@ -173,7 +173,7 @@ TEST_F(TopOfABlock, FarFromTheModel_EveryPointHangs) {
 
 TEST_F(TopOfABlock, ASparseCloudDividesADenseModel) {
     const TriangleMesh dense = resampled(block(), 0.6, {}, context).mesh;
-    const Model dense_model(dense, context);
+    const Model dense_model(dense, closed_opposites(dense), FacetTree(dense, 1));
     const CloudSurface sparse = cloud_surface(step_cloud({20, 10, 40, 30}, 20, 0, 4, 4)->positions, {}, context);
     ASSERT_EQ(sparse.loops.size(), 1);
     const LoopOverlap overlap = overlap_of(dense_model, sparse, sparse.loops[0], 3, context);
@@ -186,7 +186,7 @@ TEST_F(TopOfABlock, VerticesUnderTheCloudAreDiscarded_ThoseOutsideAreNot) {
     const LoopOverlap overlap = overlap_of(model, cloud, cloud.loops[0], 3, context);
     Array<u8> discarded(mesh.positions.size(), u8(0));
     const PointTree points(cloud.mesh.positions.span());
-    discard_under(model, overlap.facets, cloud, points, 0.3, discarded, context);
+    discard_under(model, overlap.facets, cloud, points, 0.3, Array<u8>(discarded), discarded, context);
     std::set<u32> at_overlap;
     for (const u32 facet : overlap.facets)
         at_overlap.insert(mesh.triangles[facet].begin(), mesh.triangles[facet].end());
