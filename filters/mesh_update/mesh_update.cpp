@@ -23,6 +23,7 @@
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/distance/swept_distance.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill {
@@ -40,6 +41,9 @@ constexpr double largest_offset = 0.5;
 
 /// Above this share of unused points, compared with the points of the clouds, a result is doubtful.
 constexpr double most_unused = 0.05;
+/// Handles are looked for up to this length, in spacings of the coarsest cloud, and up to this number.
+constexpr double longest_handle = 8;
+constexpr std::size_t most_handles = 16;
 /// Above this share of the new surface farther than a spacing from everything that was given, a result is doubtful.
 constexpr double most_far = 0.03;
 
@@ -407,6 +411,11 @@ private:
                 if (is_chosen) is_replaced_[angle.group] = true;
             }
         }
+        for (const CloudGroup& group : groups_)
+            for (const u32 beyond : groups_beyond_other_barriers(model, group, replacer)) {
+                replacer[beyond] = &group;
+                is_replaced_[beyond] = true;
+            }
         // A fragment of one cloud may be a group of another.
         for (const u32 fragment : fragments)
             if (keeper[fragment]) is_replaced_[fragment] = replacer[fragment] != nullptr;
@@ -421,6 +430,37 @@ private:
                 result_.angles.push_back(
                     {group.numbers[0] + 1, angle.group + 1, angle.mean, bool(is_replaced_[angle.group])});
         require_kept_groups(model);
+    }
+
+    /// Groups on the side of the model that the cloud replaces, behind the barriers of other clouds. A cloud replaces
+    /// all that its own barrier separates.
+    std::vector<u32> groups_beyond_other_barriers(const Model& model, const CloudGroup& group,
+                                                  std::span<const CloudGroup* const> replacer) const {
+        if (groups_.size() == 1) return {};
+        std::vector<bool> is_own(model.mesh.triangles.size());
+        for (const LoopOverlap& loop : group.loops)
+            for (const u32 facet : loop.facets) is_own[facet] = true;
+        // Sets of groups and of the other clouds' overlap facets; facets follow the groups.
+        const std::size_t groups = segmentation_.count;
+        DisjointSets sets(groups + model.mesh.triangles.size());
+        const auto number = [&](u32 facet) {
+            const std::int32_t its = segmentation_.of_facet[facet];
+            return static_cast<u32>(its == Groups::overlap ? groups + facet : static_cast<std::size_t>(its));
+        };
+        for (const CloudGroup& other : groups_)
+            for (const LoopOverlap& loop : other.loops)
+                for (const u32 facet : loop.facets)
+                    for (u32 h = 3 * facet; h < 3 * facet + 3 && !is_own[facet]; ++h)
+                        if (const u32 beside = model.opposite[h] / 3; !is_own[beside])
+                            sets.unite(number(facet), number(beside));
+        std::vector<u32> found;
+        for (u32 g = 0; g < groups; ++g)
+            for (u32 own = 0; own < groups && replacer[g] != &group; ++own)
+                if (replacer[own] == &group && sets.find(g) == sets.find(own)) {
+                    found.push_back(g);
+                    break;
+                }
+        return found;
     }
 
     /// Something must stay in every component of the model that loses a group.
@@ -491,10 +531,23 @@ private:
         Array<Vec3> all(model.mesh.positions.begin(), model.mesh.positions.end());
         all.insert(all.end(), positions_.begin(), positions_.end());
         for (std::size_t i = model_vertices; i < all.size(); ++i) rows.push_back(static_cast<u32>(i));
-        const Rebuilt rebuilt =
-            params_.rebuild == MeshUpdateParams::Rebuild::whole
-                ? rebuild_whole(model, all, rows, params_, context_)
-                : rebuild_around(model, all, rows, discarded, segmentation_, parts(), params_, context_);
+        find_expected_euler(model);
+        const auto rebuilt_from = [&](const Array<u32>& chosen) {
+            return params_.rebuild == MeshUpdateParams::Rebuild::whole
+                       ? rebuild_whole(model, all, chosen, params_, context_)
+                       : rebuild_around(model, all, chosen, discarded, segmentation_, parts(), params_, context_);
+        };
+        Rebuilt rebuilt = rebuilt_from(rows);
+        if (euler_of_closed(rebuilt) < std::min(expected_euler_, sphere_euler_))
+            if (const Array<u32> fewer = without_handles(rebuilt, rows, all, model_vertices);
+                fewer.size() < rows.size())
+                if (Rebuilt second = rebuilt_from(fewer); is_expected(euler_of_closed(second))) {
+                    context_.warn(fmt::format(
+                        "{} left out: otherwise the surface has a handle between them",
+                        count_text(rows.size() - fewer.size(), "point of a cloud is", "points of the clouds are")));
+                    rebuilt = std::move(second);
+                }
+        for (const std::string& warning : rebuilt.warnings) context_.warn(warning);
         context_.progress(0.9);
         result_.unused = result_.kept + result_.added - rebuilt.rows.size();
         const Difference changed = difference(model.mesh, rebuilt);
@@ -502,7 +555,7 @@ private:
         result_.updated = true;
         list_changes(model, rebuilt, changed, result_, context_);
         doubt_points(rebuilt, model_vertices);
-        doubt_topology(model);
+        doubt_topology(rebuilt);
         doubt_distance(model, changed);
     }
 
@@ -523,23 +576,49 @@ private:
                            "mesh");
     }
 
-    /// Doubts a result that is not topologically the rest of the model joined with the surfaces of the clouds. The
-    /// surface of a noisy cloud has pinholes, and handles beside them; it may then also be a sphere with its loops cut
-    /// out.
-    void doubt_topology(const Model& model) {
-        long expected = euler_of_rest(model, segmentation_, is_replaced_), without_handles = expected;
+    /// The result is the rest of the model joined with the surfaces of the clouds. The surface of a noisy cloud has
+    /// pinholes, and handles beside them; it may then also be a sphere with its loops cut out.
+    void find_expected_euler(const Model& model) {
+        expected_euler_ = sphere_euler_ = euler_of_rest(model, segmentation_, is_replaced_);
         for (const CloudGroup& group : groups_) {
             const CloudEuler found = euler_of(group.surface);
-            expected += found.as_found;
-            without_handles += group.surface.ignored_loops > 0 ? found.as_sphere : found.as_found;
+            expected_euler_ += found.as_found;
+            sphere_euler_ += group.surface.ignored_loops > 0 ? found.as_sphere : found.as_found;
         }
-        // Every edge of a closed mesh has two triangles.
-        const long found =
-            static_cast<long>(result_.mesh.positions.size()) - static_cast<long>(result_.mesh.triangles.size()) / 2;
-        if (found != expected && found != without_handles)
+    }
+    bool is_expected(long euler) const { return euler == expected_euler_ || euler == sphere_euler_; }
+    /// Every edge of a closed mesh has two triangles.
+    static long euler_of_closed(const Rebuilt& mesh) {
+        return static_cast<long>(mesh.rows.size()) - static_cast<long>(mesh.triangles.size()) / 2;
+    }
+
+    /// The rows without the points of clouds on short loops round a handle. At sharp edges, tight cocone may join a few
+    /// points into a handle of three or four edges.
+    Array<u32> without_handles(const Rebuilt& rebuilt, const Array<u32>& rows, std::span<const Vec3> positions,
+                               std::size_t model_vertices) {
+        TriangleMesh mesh;
+        Array<Vec3> placed;
+        for (const u32 row : rebuilt.rows) placed.push_back(positions[row]);
+        mesh.positions = std::move(placed);
+        mesh.triangles = rebuilt.triangles;
+        double spacing = 0;
+        for (const CloudGroup& group : groups_) spacing = std::max(spacing, group.surface.spacing);
+        std::vector<bool> is_on_handle(positions.size());
+        for (const HandleLoop& loop : handle_loops(mesh, longest_handle * spacing, most_handles, context_))
+            for (const u32 vertex : loop.vertices)
+                if (rebuilt.rows[vertex] >= model_vertices) is_on_handle[rebuilt.rows[vertex]] = true;
+        Array<u32> left;
+        for (const u32 row : rows)
+            if (!is_on_handle[row]) left.push_back(row);
+        return left;
+    }
+
+    void doubt_topology(const Rebuilt& rebuilt) {
+        const long found = euler_of_closed(rebuilt);
+        if (!is_expected(found))
             context_.doubt(fmt::format("the result has the Euler characteristic {}; the rest of the model and the "
                                        "surfaces of the clouds give {}",
-                                       found, without_handles),
+                                       found, sphere_euler_),
                            "mesh");
     }
 
@@ -629,6 +708,7 @@ private:
     Array<Vec3> positions_;  ///< of all clouds, relative to the model's origin
     std::vector<CloudGroup> groups_;
     double max_distance_ = 0;
+    long expected_euler_ = 0, sphere_euler_ = 0;
     Array<u8> discarded_;
     Groups segmentation_;
     std::vector<bool> is_replaced_;

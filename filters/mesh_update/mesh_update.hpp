@@ -102,7 +102,9 @@ struct MeshUpdateResult {
 /// Post: every vertex of the model that is not discarded keeps its coordinates, bit for bit. With OnDoubt::keep and a
 ///       doubt, positions and triangles are those of the given model. The result does not depend on the number of
 ///       threads, nor on which way the clouds' or the model's triangles were found.
-///       Clouds whose loops come within two spacings of each other count as one.
+///       Where the surface would have a handle of a few spacings that neither the model nor a cloud has, the points of
+///       the clouds on it are left out once, with a warning. Clouds whose loops come within two spacings of each other
+///       count as one.
 /// Ties: of equally near facets, that with the lowest row; of equally near vertices, the lowest.
 /// Cost: whole: that of delaunay() and tight_cocone() on all points; local: one pass over the model, then the change.
 /// Metrics: see plugin.cpp. Doubts a result whose topology is not that of the kept groups joined with the clouds'

@@ -75,9 +75,9 @@ Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::
     NestedContext first(context, 0.4, 0.6), second(context, 0.6, 0.9);
     const DelaunayResult tets = delaunay(points, {}, first);
     const TightCoconeResult solid = tight_cocone(tets.tets, params, second);
-    for (const Context* nested : {static_cast<const Context*>(&first), static_cast<const Context*>(&second)})
-        for (const std::string& warning : nested->warnings()) context.warn(warning);
     Rebuilt result;
+    for (const Context* nested : {static_cast<const Context*>(&first), static_cast<const Context*>(&second)})
+        result.warnings.insert(result.warnings.end(), nested->warnings().begin(), nested->warnings().end());
     const std::span<const u32> row_of = solid.mesh.vertex_columns.find(row_column)->values<u32>();
     result.rows.assign(row_of.begin(), row_of.end());
     result.triangles.assign(solid.mesh.triangles.begin(), solid.mesh.triangles.end());

@@ -15,11 +15,11 @@ struct Rebuilt {
     Array<Triangle> triangles;  ///< corners are vertices
     std::size_t fixed = 0;  ///< the first triangles that are facets of the model
     Array<u32> replaced;  ///< facets of the model that are not among the first `fixed` triangles, ascending
+    std::vector<std::string> warnings;
 };
 
-/// tight_cocone() of the points at these rows. Its warnings are passed on; its doubts are not, because they expect an
-/// even sampling of the whole surface. Reports progress from 0.4 to 0.9. Throws Error as delaunay() and tight_cocone()
-/// do.
+/// tight_cocone() of the points at these rows, with its warnings. Its doubts are left out, because they expect an even
+/// sampling of the whole surface. Reports progress from 0.4 to 0.9. Throws Error as delaunay() and tight_cocone() do.
 Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
                       const TightCoconeParams& params, Context& context);
 

@@ -196,6 +196,34 @@ TEST(MeshUpdateRefusals, Parameters) {
     EXPECT_THAT(refusal(block(), one(pad()), params).sentence(), HasSubstr("angle-gap"));
 }
 
+TEST(MeshUpdateRefusals, NoiseModeWithALocalRebuild) {
+    MeshUpdateParams params = default_params();
+    params.rebuild = MeshUpdateParams::Rebuild::local;
+    params.noise = MeshUpdateParams::Noise::big_balls;
+    EXPECT_THAT(refusal(block(), one(pad()), params).sentence(), HasSubstr("big-balls"));
+}
+
+TEST(MeshUpdateRefusals, ACloudOfDuplicates) {
+    PointCloud cloud = pad();
+    Array<Vec3> twice(cloud.positions.begin(), cloud.positions.end());
+    twice.insert(twice.end(), cloud.positions.begin(), cloud.positions.end());
+    cloud.positions = std::move(twice);
+    EXPECT_THAT(refusal(block(), one(cloud)).sentence(), HasSubstr("duplicates"));
+}
+
+TEST(MeshUpdateRefusals, CloudsWithTheOthersBorderInside) {
+    // Two caps that overlap at the equator: each one's loop lies under the other.
+    Array<Vec3> upper, lower;
+    for (const Vec3& p : geodesic_sphere(10, 30).positions) {
+        if (p.z() > -1) upper.push_back(p);
+        if (p.z() < 1) lower.push_back(p);
+    }
+    PointCloud above, below;
+    above.positions = std::move(upper);
+    below.positions = std::move(lower);
+    EXPECT_THAT(refusal(geodesic_sphere(10, 16), {one(above)[0], one(below)[0]}).sentence(), HasSubstr("ambiguous"));
+}
+
 TEST(OnDoubtKeep, ReturnsTheModelBitForBit) {
     struct Doubtful {
         std::string kind;
@@ -219,6 +247,8 @@ TEST(OnDoubtKeep, ReturnsTheModelBitForBit) {
         ASSERT_EQ(context.warnings().size(), 1) << kind;
         EXPECT_THAT(context.warnings()[0], HasSubstr(kind));
         EXPECT_EQ(context.metrics().find("updated")->value, 0);
+        EXPECT_EQ(context.metrics().find("replaced")->value, 0);
+        EXPECT_EQ(result.kept, result.initial);
         for (const u8 updated : result.mesh.face_columns.find("updated")->values<u8>()) EXPECT_EQ(updated, 0);
     }
 }

@@ -319,6 +319,71 @@ TEST(MeshUpdate, ACloudWithAHoleOverTheChange_IsClosed) {
     EXPECT_NEAR(signed_volume(result.mesh), 48000 + 400 * 6, updated_area(result.mesh) / 2);
 }
 
+TEST(UpdateDoubts, APadWithoutItsTop_IsClosedFarFromTheCloud) {
+    Array<Vec3> open;
+    for (const Vec3& p : step_cloud(middle, 20, 6, 4, 1)->positions)
+        if (p.z() < 26) open.push_back(p);
+    PointCloud cloud;
+    cloud.positions = std::move(open);
+    Context context;
+    mesh_update(block(), {std::vector{std::make_shared<const PointCloud>(cloud)}}, with_distance(3), context);
+    ASSERT_FALSE(context.doubts().empty());
+    EXPECT_THAT(context.doubts()[0].text, testing::HasSubstr("farther than 1 u"));
+}
+
+TEST(UpdateDoubts, PointsInSpaceAreNotOnTheSurface) {
+    PointCloud cloud = *step_cloud(middle, 20, 6, 4, 1);
+    Array<Vec3> more(cloud.positions.begin(), cloud.positions.end());
+    for (const Vec3& p : random_cube(200, 5, 10).positions) more.push_back(p + Vec3(25, 15, 30));
+    cloud.positions = std::move(more);
+    Context context;
+    mesh_update(block(), {std::vector{std::make_shared<const PointCloud>(cloud)}}, with_distance(3), context);
+    ASSERT_FALSE(context.doubts().empty());
+    EXPECT_THAT(context.doubts()[0].text, testing::HasSubstr("of the clouds are not on the surface"));
+}
+
+TEST(UpdateDoubts, ANoisyCloudGivesTheRightTopologyOrADoubt) {
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+        Bump bump;
+        bump.is_added = seed % 2 == 0;
+        Sampling sampling;
+        sampling.noise = 0.3 * sampling.spacing;
+        sampling.seed = seed;
+        Context context;
+        try {
+            const MeshUpdateResult result = mesh_update(
+                geodesic_sphere(10, 24), {std::vector{bump_cloud(bump, sampling)}}, with_distance(2), context);
+            EXPECT_TRUE(topology(result.mesh).euler == 2 || !context.doubts().empty()) << seed;
+        } catch (const Error& error) {
+            EXPECT_NE(error.hint(), "") << seed;
+        }
+    }
+}
+
+TEST(MeshUpdate, AModelOfTwoComponents_KeepsTheOther) {
+    TriangleMesh model = block();
+    Array<Vec3> positions(model.positions.begin(), model.positions.end());
+    Array<Triangle> triangles(model.triangles.begin(), model.triangles.end());
+    for (const Vec3& p : block().positions) positions.push_back(p + Vec3(100, 0, 0));
+    for (const Triangle& t : block().triangles) triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+    positions.emplace_back(200, 200, 200);  // in no triangle
+    model.positions = std::move(positions);
+    model.triangles = std::move(triangles);
+    for (const auto rebuild : {MeshUpdateParams::Rebuild::whole, MeshUpdateParams::Rebuild::local}) {
+        MeshUpdateParams params = with_distance(3);
+        params.rebuild = rebuild;
+        Context context;
+        const MeshUpdateResult result =
+            mesh_update(model, std::vector{step_cloud(middle, 20, 6, 4, 1)}, params, context);
+        EXPECT_EQ(result.initial, 16);
+        EXPECT_EQ(result.groups, 3);
+        EXPECT_EQ(result.replaced, 1);
+        EXPECT_EQ(topology(result.mesh).euler, 4);
+        EXPECT_NEAR(signed_volume(result.mesh), 2 * 48000 + 2400, updated_area(result.mesh) / 2);
+        EXPECT_THAT(context.doubts(), IsEmpty());
+    }
+}
+
 TEST(MeshUpdate, NeitherOrderNorNumberingChangesTheDecision) {
     const TriangleMesh model = geodesic_sphere(10, 16);
     const auto cloud = bump_cloud({}, {});
