@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <unordered_set>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
@@ -20,7 +21,39 @@ namespace {
 
 using Counts = std::function<bool(const std::array<Vec3, 3>&)>;
 
-constexpr u32 check_interval = 1 << 14;
+constexpr u32 check_interval = 1 << 14, suspect_check_interval = 1 << 17;
+
+/// Distance of two edges that cross, as a share of one of them: far above the rounding of doubles, far below a crease.
+constexpr double flatness = 1e-9;
+
+/// The same as a share of the largest coordinate, if all coordinates have single precision: the rounding moves a point
+/// of each edge by at most √3 2^-24 of it.
+constexpr double single_rounding = 0x1p-22;
+
+/// Least excess of two opposite angles over π: rectangles keep their diagonals.
+constexpr double least_excess = 1e-6;
+
+/// Whether the least angle is below 14.5°.
+bool is_thin(const Vec3& a, const Vec3& b, const Vec3& c, double twice_area) {
+    std::array<double, 3> squared{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
+    std::ranges::sort(squared);
+    return twice_area < thin_sine * std::sqrt(squared[1] * squared[2]);
+}
+
+std::uint64_t key_of(const Edge& edge) { return std::uint64_t(edge[0]) << 32 | edge[1]; }
+
+/// The distance that rounding leaves between edges that cross: 0, or more if all coordinates have single precision, as
+/// in most CAD files.
+double rounding_of(std::span<const Vec3> positions) {
+    double largest = 0;
+    for (const Vec3& p : positions) {
+        for (const double coordinate : p) {
+            if (coordinate != static_cast<double>(static_cast<float>(coordinate))) return 0;
+            largest = std::max(largest, std::abs(coordinate));
+        }
+    }
+    return single_rounding * largest;
+}
 
 double squared_length(std::span<const Vec3> positions, u32 a, u32 b) {
     return (positions[b] - positions[a]).squaredNorm();
@@ -59,23 +92,6 @@ std::optional<std::vector<Judged>> judged_triangles(const TriangleMesh& mesh, do
     return judged;
 }
 
-/// A lower bound of the number of points that are added if all triangles count. No part of an edge is longer than
-/// `longest`. No part of a triangle is larger than the equilateral triangle with this edge, and a split makes at most
-/// two triangles more.
-double least_added(const TriangleMesh& mesh, double longest) {
-    double twice_area = 0, halves_of_edges = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-        if (half_edges::has_repeated_vertex(triangle)) continue;
-        const auto [a, b, c] = corners(mesh.positions.span(), triangle);
-        twice_area += area_vector(a, b, c).norm();
-        for (const double length : {(b - a).norm(), (c - b).norm(), (a - c).norm()})
-            halves_of_edges += std::max(0.0, std::ceil(length / longest) - 1);
-    }
-    const double twice_largest = std::numbers::sqrt3 / 2 * longest * longest;
-    const double triangles = twice_area / twice_largest - static_cast<double>(mesh.triangles.size());
-    return std::floor(std::max(triangles / 2, halves_of_edges / 2));
-}
-
 [[noreturn]] void refuse(const std::string& number, double longest, bool all, std::size_t most) {
     throw Error("resampling so that no edge is longer than {:.4g} u would add {} points; at most {} are possible",
                 longest, number, most)
@@ -96,16 +112,22 @@ public:
           positions_(mesh.positions.begin(), mesh.positions.end()),
           triangles_(mesh.triangles.begin(), mesh.triangles.end()),
           opposite_(half_edges::opposites(mesh)),
-          judged_(std::move(judged)) {
+          judged_(std::move(judged)),
+          rounding_(rounding_of(mesh.positions.span())) {
         assert(triangles_.size() < half_edges::no_half_edge / 3 - 2 * most_);  // numbers of half-edges
+        for (const Edge& edge : mesh.sharp_edges) declared_.insert(key_of(edge));
+        for (const auto& [a, b] : mesh.edges) declared_.insert(key_of(make_edge(a, b)));
     }
 
     void run(Context& context) {
+        if (!counts_)
+            if (const double least = least_added(); !(least <= static_cast<double>(most_)))
+                refuse(fmt::format("at least {:.0f}", least), longest_, true, most_);
         std::vector<LongEdge> first;
         for (u32 h = 0; h < opposite_.size(); ++h) {
-            const u32 other = opposite_[h];
-            const bool is_first = other == half_edges::boundary || (other != half_edges::no_half_edge && h < other);
-            if (is_first && is_split(h)) first.push_back(long_edge(h));
+            if (!is_first(h)) continue;
+            if (is_split(h)) first.push_back(long_edge(h));
+            if (is_inner(h) && (is_near_long(h / 3) || is_near_long(opposite_[h] / 3))) suspects_.push_back(h);
         }
         queue_ = Queue({}, std::move(first));
         double progress = 0;
@@ -120,7 +142,10 @@ public:
             }
             if (edge_of(edge.half_edge) != edge.vertices || !is_split(edge.half_edge)) continue;
             if (parents_.size() == most_) refuse(fmt::format("more than {}", most_), longest_, !counts_, most_);
-            split(edge.half_edge);
+            const u32 before = split_before(edge.half_edge);
+            if (before != edge.half_edge) queue_.push(edge);  // its turn comes again if it is not flipped
+            split(before);
+            flip_suspects(context);
         }
     }
 
@@ -159,7 +184,29 @@ private:
     u32 end(u32 h) const { return start(half_edges::after(h)); }
     u32 apex(u32 h) const { return start(half_edges::before(h)); }
     Edge edge_of(u32 h) const { return make_edge(start(h), end(h)); }
-    LongEdge long_edge(u32 h) const { return {squared_length(positions_, start(h), end(h)), edge_of(h), h}; }
+    double squared_length_of(u32 h) const { return squared_length(positions_, start(h), end(h)); }
+    LongEdge long_edge(u32 h) const { return {squared_length_of(h), edge_of(h), h}; }
+
+    /// Whether edges of this triangle of the given mesh may be flipped before the first split.
+    bool is_near_long(u32 row) const { return !counts_ || judged_[row] != Judged::unknown; }
+    bool is_inner(u32 h) const { return opposite_[h] < half_edges::no_half_edge; }
+    /// Whether this is the half-edge that stands for its edge.
+    bool is_first(u32 h) const { return opposite_[h] == half_edges::boundary || (is_inner(h) && h < opposite_[h]); }
+
+    /// A lower bound of the number of points that are added if all triangles count. No part of an edge that stays is
+    /// longer than `longest`. No triangle is larger than the equilateral one with this edge, and a split makes at most
+    /// two triangles more.
+    double least_added() {
+        double twice_area = 0, on_edges = 0;
+        for (const Triangle& triangle : triangles_)
+            if (!half_edges::has_repeated_vertex(triangle)) twice_area += area_vector(positions_, triangle).norm();
+        for (u32 h = 0; h < opposite_.size(); ++h)
+            if (is_first(h) && is_split(h) && !is_flippable(h))
+                on_edges += std::ceil(std::sqrt(squared_length_of(h)) / longest_) - 1;
+        const double twice_largest = std::numbers::sqrt3 / 2 * squared_longest_;
+        const double triangles = twice_area / twice_largest - static_cast<double>(triangles_.size());
+        return std::floor(std::max(triangles / 2, on_edges));
+    }
 
     bool does_count(u32 row) {
         if (!counts_) return true;
@@ -169,7 +216,7 @@ private:
     }
     /// Whether the edge is long and in a triangle that counts.
     bool is_split(u32 h) {
-        if (!(squared_length(positions_, start(h), end(h)) > squared_longest_)) return false;
+        if (!(squared_length_of(h) > squared_longest_)) return false;
         const u32 other = opposite_[h];
         if (other == half_edges::boundary) return does_count(h / 3);
         // Two triangles with the same vertices: both would get an edge from the midpoint to the same third vertex.
@@ -179,6 +226,77 @@ private:
     void push(u32 h) {
         if (is_split(h)) queue_.push(long_edge(h));
     }
+
+    /// Lawson's algorithm: flips edges until no suspect is to be flipped; a flip makes the edges around it suspects.
+    void flip_suspects(Context& context) {
+        while (!suspects_.empty()) {
+            if (++suspected_ % suspect_check_interval == 0) context.check_cancelled();
+            const u32 h = suspects_.back();
+            suspects_.pop_back();
+            if (is_flipped(h)) flip(h);
+        }
+    }
+    /// Whether the edge is to be flipped: one of its triangles is thin, and it violates the empty-circle test.
+    bool is_flipped(u32 h) {
+        if (!is_inner(h)) return false;
+        const u32 other = opposite_[h];
+        const Vec3 &a = positions_[start(h)], &b = positions_[end(h)], &c = positions_[apex(h)],
+                   &d = positions_[apex(other)];
+        const double twice_area = area_vector(a, b, c).norm(), other_twice_area = area_vector(b, a, d).norm();
+        const double cosine = (a - c).dot(b - c), other_cosine = (b - d).dot(a - d);
+        const double size =
+            std::sqrt((a - c).squaredNorm() * (b - c).squaredNorm() * (a - d).squaredNorm() * (b - d).squaredNorm());
+        // The sine of the sum of both angles opposite to the edge. The other angles have a sum below π then: the
+        // quadrilateral is strictly convex.
+        if (!(twice_area * other_cosine + other_twice_area * cosine < -least_excess * size)) return false;
+        return (is_thin(a, b, c, twice_area) || is_thin(b, a, d, other_twice_area)) && is_flippable(h);
+    }
+    /// Whether the edge may be flipped: the surface remains the same, and the edge is not declared.
+    bool is_flippable(u32 h) {
+        if (!is_inner(h)) return false;
+        const u32 other = opposite_[h];
+        const Vec3 &a = positions_[start(h)], &b = positions_[end(h)], &c = positions_[apex(h)],
+                   &d = positions_[apex(other)];
+        if (!(area_vector(a, b, c).dot(area_vector(b, a, d)) > 0)) return false;
+        // The flip moves no point of the surface farther than the distance between the old and the new edge.
+        const Vec3 normal = (b - a).cross(d - c);
+        const double distance = std::max(flatness * (b - a).norm(), rounding_);
+        if (!(std::abs(normal.dot(c - a)) <= distance * normal.norm())) return false;
+        return !declared_.contains(key_of(edge_of(h))) && does_count(h / 3) && does_count(other / 3);
+    }
+    /// The edge to split before this long one, or this one. The midpoints of two sides of a triangle are half of the
+    /// third side apart. Where that is too near, a side that stays is split before one that its split may flip.
+    u32 split_before(u32 h) {
+        std::optional<LongEdge> best;
+        if (is_flippable(h))
+            for (const u32 half_edge : {h, opposite_[h]}) {
+                const std::array<u32, 2> sides{half_edges::after(half_edge), half_edges::before(half_edge)};
+                for (std::size_t i = 0; i < 2; ++i)
+                    if (4 * squared_length_of(sides[1 - i]) < squared_longest_ && is_split(sides[i]) &&
+                        !is_flippable(sides[i]) && (!best || *best < long_edge(sides[i])))
+                        best = long_edge(sides[i]);
+            }
+        return best ? best->half_edge : h;
+    }
+
+    /// Replaces the edge of two triangles by the one between their other vertices. Half-edge after(h) becomes the new
+    /// edge; h and its opposite take the place of the two sides that change their triangle.
+    void flip(u32 h) {
+        const u32 other = opposite_[h], side = half_edges::after(h), other_side = half_edges::after(other);
+        const u32 vertex = apex(h), other_vertex = apex(other);
+        triangles_[side / 3][side % 3] = other_vertex;
+        triangles_[other_side / 3][other_side % 3] = vertex;
+        link(h, opposite_[other_side]);
+        link(other, opposite_[side]);
+        link(side, other_side);
+        if (counts_) judged_[h / 3] = judged_[other / 3] = Judged::unknown;
+        push(side);
+        for (const u32 outer : {h, half_edges::before(h), other, half_edges::before(other)}) {
+            push(outer);  // has another number now, or its triangle may count now
+            suspects_.push_back(outer);
+        }
+    }
+
     void link(u32 one, u32 other) {
         opposite_[one] = other;
         if (other != half_edges::boundary) opposite_[other] = one;
@@ -197,8 +315,10 @@ private:
         for (std::size_t i = 0; i < 2; ++i)
             if (sides[i] != half_edges::boundary) link(appended[i], appended[1 - i]);
 
-        push(h);
-        push(sides[0] == h ? appended[0] : appended[1]);
+        for (const u32 half : {h, sides[0] == h ? appended[0] : appended[1]}) {
+            push(half);
+            suspects_.push_back(half);
+        }
         for (std::size_t i = 0; i < 2; ++i) {
             if (sides[i] == half_edges::boundary) continue;
             const auto at_higher = [&](u32 half_edge) {
@@ -206,8 +326,13 @@ private:
             };
             push(at_higher(sides[i]));  // from the midpoint to the third vertex
             push(at_higher(appended[i]));  // has another number now
-            if (counts_) push(at_higher(at_higher(sides[i])));  // the triangle may count now
+            const u32 at_lower = at_higher(at_higher(sides[i]));
+            if (counts_) push(at_lower);  // the triangle may count now
+            suspects_.push_back(at_lower);
+            suspects_.push_back(at_higher(appended[i]));
         }
+        if (declared_.erase(key_of(ends)) > 0)
+            for (const u32 vertex : ends) declared_.insert(key_of(make_edge(vertex, midpoint)));
     }
 
     /// Halves the triangle of half-edge `h`, which is to be split at `midpoint`. The half at the lower vertex keeps the
@@ -342,6 +467,10 @@ private:
     Array<Edge> parents_;  ///< ends of the edge that each new vertex split
     Array<u32> rows_;  ///< old row of each appended triangle
     Queue queue_;
+    double rounding_;
+    std::unordered_set<std::uint64_t> declared_;  ///< sharp edges and `edges`, which are not flipped
+    std::vector<u32> suspects_;  ///< half-edges that may have to be flipped
+    std::size_t suspected_ = 0;
     std::vector<Midpoint> midpoints_;
 };
 
@@ -354,9 +483,6 @@ Resampled resampled(const TriangleMesh& mesh, double longest, const Counts& coun
             .hint("thin the clouds with voxel-thin: most of their points may have a duplicate");
     std::optional<std::vector<Judged>> judged = judged_triangles(mesh, longest * longest, counts, context);
     if (!judged) return {mesh, 0};
-    if (!counts)
-        if (const double least = least_added(mesh, longest); !(least <= static_cast<double>(most)))
-            refuse(fmt::format("at least {:.0f}", least), longest, true, most);
     Splitting splitting(mesh, std::move(*judged), longest, counts, most);
     splitting.run(context);
     return splitting.result();

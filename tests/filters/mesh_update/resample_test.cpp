@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "scanmill/base/random.hpp"
 #include "scanmill/data/half_edges.hpp"
@@ -75,18 +76,109 @@ std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
+double angle_at(const Vec3& apex, const Vec3& a, const Vec3& b) {
+    return std::atan2((a - apex).cross(b - apex).norm(), (a - apex).dot(b - apex)) / degree;
+}
+
+double least_angle(const std::array<Vec3, 3>& t) {
+    return std::min({angle_at(t[0], t[1], t[2]), angle_at(t[1], t[2], t[0]), angle_at(t[2], t[0], t[1])});
+}
+
 double least_angle(const TriangleMesh& mesh) {
     double least = 180;
-    for (const Triangle& triangle : mesh.triangles)
-        for (u32 i = 0; i < 3; ++i) {
-            const Vec3 &apex = mesh.positions[triangle[i]], one = mesh.positions[triangle[(i + 1) % 3]] - apex,
-                       two = mesh.positions[triangle[(i + 2) % 3]] - apex;
-            least = std::min(least, std::atan2(one.cross(two).norm(), one.dot(two)) / degree);
-        }
+    for (const Triangle& triangle : mesh.triangles) least = std::min(least, least_angle(corners_of(mesh, triangle)));
     return least;
 }
 
-/// The rules in another form: a search among all edges before every split.
+/// Two triangles with a common edge.
+struct Quad {
+    std::array<u32, 2> rows;
+    std::array<u32, 2> apexes;  ///< in the order of the rows
+};
+
+/// Sorted by edge.
+std::vector<std::pair<Edge, Quad>> quads(const TriangleMesh& mesh) {
+    std::vector<std::tuple<Edge, u32, u32>> sides;
+    for (u32 row = 0; row < mesh.triangles.size(); ++row) {
+        const auto [a, b, c] = mesh.triangles[row];
+        sides.insert(sides.end(), {{make_edge(a, b), row, c}, {make_edge(b, c), row, a}, {make_edge(c, a), row, b}});
+    }
+    std::ranges::sort(sides);
+    std::vector<std::pair<Edge, Quad>> result;
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const auto& [edge, row, apex] = sides[i];
+        const auto& [next, next_row, next_apex] = sides[i + 1];
+        if (edge == next) result.push_back({edge, Quad{{row, next_row}, {apex, next_apex}}});
+    }
+    return result;
+}
+
+const Quad* quad_at(const std::vector<std::pair<Edge, Quad>>& all, const Edge& edge) {
+    const auto found = std::ranges::lower_bound(all, edge, {}, &std::pair<Edge, Quad>::first);
+    return found != all.end() && found->first == edge ? &found->second : nullptr;
+}
+
+/// The triangles' normals agree to 0.1 thousandth of a degree.
+bool is_flat(const TriangleMesh& mesh, const Quad& quad) {
+    std::array<Vec3, 2> normals;
+    for (u32 i = 0; i < 2; ++i) {
+        const auto [a, b, c] = corners_of(mesh, mesh.triangles[quad.rows[i]]);
+        normals[i] = (b - a).cross(c - a).normalized();
+    }
+    return angle_at(Vec3::Zero(), normals[0], normals[1]) < 1e-4;
+}
+
+bool is_flippable(const TriangleMesh& mesh, const Quad& quad, const Counts& counts) {
+    for (const u32 row : quad.rows)
+        if (counts && !counts(corners_of(mesh, mesh.triangles[row]))) return false;
+    return is_flat(mesh, quad);
+}
+
+/// Flips the first edge that has to be flipped.
+bool flip_one(TriangleMesh& mesh, const Counts& counts) {
+    for (const auto& [edge, quad] : quads(mesh)) {
+        const Vec3 &a = mesh.positions[edge[0]], &b = mesh.positions[edge[1]];
+        const Vec3 &c = mesh.positions[quad.apexes[0]], &d = mesh.positions[quad.apexes[1]];
+        if ((a - c).dot(b - c) >= 0 && (a - d).dot(b - d) >= 0) continue;  // both angles are at most 90°
+        if (angle_at(c, a, b) + angle_at(d, a, b) < 180 + 1e-4) continue;
+        const double least = std::min(least_angle({a, b, c}), least_angle({a, b, d}));
+        if (least > std::asin(thin_sine) / degree || !is_flippable(mesh, quad, counts)) continue;
+        Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+        for (u32 i = 0; i < 2; ++i)  // each triangle loses one end of the edge
+            for (u32& vertex : triangles[quad.rows[i]])
+                if (vertex == edge[i]) {
+                    vertex = quad.apexes[1 - i];
+                    break;
+                }
+        mesh.triangles = triangles;
+        return true;
+    }
+    return false;
+}
+
+/// The side to split before this edge, by the rule of the header, or the edge.
+Edge split_before(const TriangleMesh& mesh, const Edge& edge, double longest, const Counts& counts) {
+    const std::vector<std::pair<Edge, Quad>> all = quads(mesh);
+    const Quad* const around = quad_at(all, edge);
+    if (around == nullptr || !is_flippable(mesh, *around, counts)) return edge;
+    Edge best = edge;
+    double most = longest;
+    for (const u32 apex : around->apexes)
+        for (u32 i = 0; i < 2; ++i) {
+            const Edge side = make_edge(edge[i], apex), third = make_edge(edge[1 - i], apex);
+            const Quad* const quad = quad_at(all, side);
+            if (quad != nullptr && is_flippable(mesh, *quad, counts)) continue;
+            if (length_of(mesh, third) >= longest / 2) continue;
+            const double length = length_of(mesh, side);
+            if (length > most || (length == most && length > longest && side < best)) {
+                most = length;
+                best = side;
+            }
+        }
+    return best;
+}
+
+/// The rules in another form: a search among all edges before every split and every flip.
 TriangleMesh searched(const TriangleMesh& mesh, double longest, const Counts& counts) {
     TriangleMesh result = mesh;
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
@@ -108,7 +200,7 @@ TriangleMesh searched(const TriangleMesh& mesh, double longest, const Counts& co
             }
         }
         if (next == Edge{}) return result;
-        const auto [lower, higher] = next;
+        const auto [lower, higher] = split_before(result, next, longest, counts);
         const u32 midpoint = static_cast<u32>(positions.size());
         positions.push_back((positions[lower] + positions[higher]) / 2);
         for (const bool ascending : {true, false})
@@ -123,12 +215,27 @@ TriangleMesh searched(const TriangleMesh& mesh, double longest, const Counts& co
                     triangles.push_back(half);
                     break;
                 }
+        result.positions = positions;
+        result.triangles = triangles;
+        while (flip_one(result, counts)) {
+        }
+        triangles.assign(result.triangles.begin(), result.triangles.end());
     }
+}
+
+/// The triangles in another order, each from its lowest vertex.
+std::set<Triangle> set_of_triangles(const TriangleMesh& mesh) {
+    std::set<Triangle> result;
+    for (Triangle t : mesh.triangles) {
+        std::ranges::rotate(t, std::ranges::min_element(t));
+        result.insert(t);
+    }
+    return result;
 }
 
 void expect_same_surface(const TriangleMesh& mesh, const TriangleMesh& other) {
     EXPECT_TRUE(std::ranges::equal(mesh.positions, other.positions));
-    EXPECT_TRUE(std::ranges::equal(mesh.triangles, other.triangles));
+    EXPECT_EQ(set_of_triangles(mesh), set_of_triangles(other));
 }
 
 void expect_laws(const TriangleMesh& mesh, const Resampled& result, double longest) {
@@ -137,7 +244,8 @@ void expect_laws(const TriangleMesh& mesh, const Resampled& result, double longe
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) ASSERT_EQ(after.positions[i], mesh.positions[i]);
     for (const Edge& edge : edges_of(after)) ASSERT_LE(length_of(after, edge), longest * (1 + 1e-15));
     EXPECT_NEAR(area(after), area(mesh), 1e-12 * area(mesh));
-    EXPECT_NEAR(test::signed_volume(after), test::signed_volume(mesh), 1e-12 * std::abs(test::signed_volume(mesh)));
+    const double volume = test::signed_volume(mesh);
+    EXPECT_NEAR(test::signed_volume(after), volume, 1e-12 * std::max(std::abs(volume), area(mesh)));
     const MeshTopology one = topology(mesh), other = topology(after);
     EXPECT_EQ(other.euler, one.euler);
     EXPECT_EQ(other.closed, one.closed);
@@ -227,11 +335,201 @@ TEST(Resample, EqualsASearchAmongAllEdges) {
         for (const TriangleMesh& mesh :
              {potato(2), cube(), torus(2, 0.5, 5, 4), without_triangles(potato(2), {3, 4, 20}), l_block(),
               both(cube(), rectangle(2, 1, 3))})
-            for (const double longest : {1.0, 0.3}) {
+            for (const double longest : {1.0, 0.4}) {
                 const Resampled result = resampled_within(mesh, longest, counts);
                 expect_same_surface(result.mesh, searched(mesh, longest, counts));
                 if (!counts) expect_laws(mesh, result, longest);
             }
+}
+
+/// Points at random heights on both sides of [0, width] × [0, 1], and the triangles between them, from the left side.
+TriangleMesh ladder(u32 count, double width) {
+    Random random(5);
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (u32 i = 0; i < count; ++i) {
+        positions.emplace_back(0, (i + random.uniform()) / count, 0);
+        positions.emplace_back(width, (i + random.uniform()) / count, 0);
+    }
+    for (u32 i = 2; i + 2 < 2 * count; i += 2) {
+        triangles.push_back({0, i + 1, i + 3});
+        triangles.push_back({i - 2, 2 * count - 1, i});
+    }
+    triangles.push_back({0, 1, 3});
+    triangles.push_back({2 * count - 4, 2 * count - 1, 2 * count - 2});
+    return soup(positions, triangles);
+}
+
+TEST(Resample, FlatRegions_HaveNoEdgeLeftThatHasToBeFlipped) {
+    for (const TriangleMesh& mesh : {ladder(8, 1.7), ladder(20, 0.6), turned(ladder(12, 1.1), 0.7, {1, 2, 3}),
+                                     turned(scaled(ladder(6, 0.05), 3), 0.3, {3, 2, 1})}) {
+        TriangleMesh flipped = mesh;
+        EXPECT_TRUE(flip_one(flipped, {}));
+        for (const double longest : {0.43, 0.22}) {
+            const Resampled result = resampled_within(mesh, longest);
+            EXPECT_GT(result.added, 0u);
+            TriangleMesh after = result.mesh;
+            EXPECT_FALSE(flip_one(after, {}));
+            for (const Edge& edge : edges_of(after)) EXPECT_LE(length_of(after, edge), longest * (1 + 1e-15));
+            EXPECT_NEAR(area(after), area(mesh), 1e-12 * area(mesh));
+            EXPECT_EQ(topology(after).boundary_loops, 1u);
+            EXPECT_EQ(topology(after).euler, 1);
+        }
+    }
+}
+
+/// A thin rhombus around the edge from 0 to 1, whose corner 3 is at this height, and a long triangle elsewhere.
+TriangleMesh thin_rhombus(double height = 0) {
+    return soup({{0, 0, 0}, {8, 0, 0}, {4, 1, 0}, {4, -1, height}, {0, 50, 0}, {20, 50, 0}, {0, 60, 0}},
+                {{0, 1, 2}, {1, 0, 3}, {4, 5, 6}});
+}
+
+TEST(Resample, ThinRhombusAndLongStrip_EqualASearchAmongAllEdges) {
+    const Counts lower = [](const std::array<Vec3, 3>& t) { return (t[0] + t[1] + t[2]).y() < 6; };
+    for (const Counts& counts : {Counts{}, lower})
+        for (const TriangleMesh& mesh : {thin_rhombus(), thin_rhombus(0.5), rectangle(9, 0.5), rectangle(0.7, 11)})
+            for (const double longest : {6.0, 2.2}) {
+                const Resampled result = resampled_within(mesh, longest, counts);
+                expect_same_surface(result.mesh, searched(mesh, longest, counts));
+            }
+}
+
+/// A fan from one corner of a square of this size to points on both sides that do not touch it.
+TriangleMesh fan(double size, u32 count) {
+    Array<Vec3> positions{{0, 0, 0}};
+    Array<Triangle> triangles;
+    for (u32 i = 0; i <= count; ++i) positions.emplace_back(size, size * i / count, 0);
+    for (u32 i = 1; i <= count; ++i) positions.emplace_back(size - size * i / count, size, 0);
+    for (u32 i = 1; i <= 2 * count; ++i) triangles.push_back({0, i, i + 1});
+    return soup(positions, triangles);
+}
+
+/// For each added vertex farther than `margin` from the old ones, the distance to its nearest neighbour.
+std::vector<double> nearest_distances(const TriangleMesh& after, std::size_t old, double margin) {
+    std::vector<double> result;
+    for (std::size_t i = old; i < after.positions.size(); ++i) {
+        double to_old = infinity, nearest = infinity;
+        for (std::size_t j = 0; j < after.positions.size(); ++j) {
+            if (j == i) continue;
+            const double distance = (after.positions[i] - after.positions[j]).norm();
+            nearest = std::min(nearest, distance);
+            if (j < old) to_old = std::min(to_old, distance);
+        }
+        if (to_old > margin) result.push_back(nearest);
+    }
+    return result;
+}
+
+TEST(Resample, FanOfThinTriangles_GetsEvenlySpreadVertices) {
+    for (const TriangleMesh& mesh : {fan(10, 100), turned(fan(10, 100), 0.7, {1, 2, 3})}) {
+        // The least angle is that between the diagonal and its neighbour: below 0.3°.
+        ASSERT_LT(least_angle(mesh), 0.3);
+        const Resampled result = resampled_within(mesh, 1);
+        EXPECT_NEAR(area(result.mesh), 100, 1e-10);
+        EXPECT_EQ(topology(result.mesh).boundary_loops, 1u);
+        // A triangle with a side of 0.1 on the square's border, and no side above 1.
+        EXPECT_GT(least_angle(result.mesh), 3);
+        // The midpoint of the longest side is at least tan(asin(thin_sine)) / 2 of it from the third vertex.
+        std::vector<double> distances = nearest_distances(result.mesh, mesh.positions.size(), 1);
+        ASSERT_GT(distances.size(), 50u);
+        EXPECT_GT(std::ranges::min(distances), thin_sine / 2);
+        std::ranges::sort(distances);
+        EXPECT_GT(distances[distances.size() / 2], 0.4);
+        // Equilateral triangles with sides of one half have 4.6 vertices per unit of area.
+        EXPECT_LT(result.added, 460u);
+    }
+}
+
+TEST(Resample, FanWithRoundedCoordinates_IsFlatToSinglePrecision) {
+    const TriangleMesh exact = turned(fan(10, 100), 0.7, {1, 2, 3});
+    const TriangleMesh rounded = with_positions(exact, [](const Vec3& p) -> Vec3 {
+        const volatile float x = static_cast<float>(p.x()), y = static_cast<float>(p.y()),
+                             z = static_cast<float>(p.z());
+        return {x, y, z};
+    });
+    const double added = static_cast<double>(resampled_within(exact, 1).added);
+    const Resampled result = resampled_within(rounded, 1);
+    EXPECT_NEAR(static_cast<double>(result.added), added, 0.05 * added);
+    EXPECT_NEAR(area(result.mesh), 100, 100e-6);
+    for (std::size_t i = 0; i < rounded.positions.size(); ++i)
+        EXPECT_EQ(result.mesh.positions[i], rounded.positions[i]);
+}
+
+TEST(Resample, ThinRhombus_IsFlipped_ButNotAcrossACrease) {
+    const auto has_flipped = [](const TriangleMesh& mesh) {
+        const std::set<Edge> edges = edges_of(resampled_within(mesh, 10).mesh);
+        EXPECT_NE(edges.contains({0, 1}), edges.contains({2, 3}));
+        return edges.contains({2, 3});
+    };
+    EXPECT_TRUE(has_flipped(thin_rhombus()));
+    // The edges are half of the height apart; 1e-9 of 8 is allowed.
+    EXPECT_TRUE(has_flipped(thin_rhombus(1.5e-8)));
+    EXPECT_FALSE(has_flipped(thin_rhombus(1.7e-8)));
+    EXPECT_FALSE(has_flipped(thin_rhombus(0.5)));
+    EXPECT_FALSE(has_flipped(with_sharp_edges(thin_rhombus(), {{0, 1}})));
+    TriangleMesh with_edge = thin_rhombus();
+    with_edge.edges = {{1, 0}};
+    EXPECT_FALSE(has_flipped(with_edge));
+}
+
+TEST(Resample, WithoutLongEdges_NothingIsFlipped) {
+    const TriangleMesh mesh = thin_rhombus();
+    const Resampled result = resampled_within(mesh, 60);
+    EXPECT_EQ(result.added, 0u);
+    EXPECT_EQ(result.mesh.triangles.data(), mesh.triangles.data());
+}
+
+TEST(Resample, Region_IsFlippedWhereItCounts) {
+    // The rhombus has no long edge, and no split is near.
+    const Counts all = [](const auto&) { return true; };
+    EXPECT_TRUE(edges_of(resampled_within(thin_rhombus(), 10, all).mesh).contains({0, 1}));
+    // The edges of the upper triangle are split, and nothing is flipped into the lower one.
+    const Counts above = [](const std::array<Vec3, 3>& t) { return (t[0] + t[1] + t[2]).y() > 0; };
+    const TriangleMesh after = resampled_within(thin_rhombus(), 3, above).mesh;
+    double below = 0;
+    for (const Triangle& t : after.triangles) {
+        const auto corners = corners_of(after, t);
+        if (!above(corners)) below += (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
+        const auto [lowest, highest] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+        EXPECT_TRUE(lowest >= 0 || highest <= 0);
+    }
+    EXPECT_NEAR(below, 4, 1e-12);
+}
+
+TEST(Resample, DeclaredEdgesOfAFlatFace_StayWithAllTheirParts) {
+    const TriangleMesh mesh = with_sharp_edges(fan(10, 20), {{0, 11}, {0, 25}, {0, 31}});
+    const TriangleMesh after = resampled_within(mesh, 1).mesh;
+    const std::set<Edge> edges = edges_of(after);
+    double length = 0, expected = 0;
+    for (const Edge& edge : after.sharp_edges) {
+        EXPECT_TRUE(edges.contains(edge));
+        EXPECT_LE(length_of(after, edge), 1);
+        length += length_of(after, edge);
+    }
+    for (const Edge& edge : mesh.sharp_edges) expected += length_of(mesh, edge);
+    EXPECT_NEAR(length, expected, 1e-12 * expected);
+}
+
+TEST(Resample, StripsBetweenCreases_GetVerticesOnTheCreasesOnly) {
+    // A prism with 40 sides, 16 high: strips 0.157 wide.
+    constexpr u32 sides = 40;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (u32 i = 0; i < sides; ++i)
+        for (const double z : {0.0, 16.0})
+            positions.emplace_back(std::cos(2 * std::numbers::pi * i / sides),
+                                   std::sin(2 * std::numbers::pi * i / sides), z);
+    for (u32 i = 0; i < sides; ++i) {
+        const u32 next = (i + 1) % sides;
+        triangles.push_back({2 * i, 2 * next, 2 * next + 1});
+        triangles.push_back({2 * i, 2 * next + 1, 2 * i + 1});
+    }
+    const TriangleMesh mesh = soup(positions, triangles);
+    const Resampled result = resampled_within(mesh, 1.1);
+    // 16 in halves until they are at most 1.1.
+    EXPECT_EQ(result.added, sides * 15);
+    for (const Vec3& p : result.mesh.positions) EXPECT_NEAR(std::hypot(p.x(), p.y()), 1, 1e-12);
+    EXPECT_NEAR(area(result.mesh), area(mesh), 1e-12 * area(mesh));
 }
 
 TEST(Resample, OpenMesh_KeepsItsBoundary) {
@@ -300,10 +598,13 @@ TEST(Resample, SharpEdges_AreDividedWithTheirEdges) {
 }
 
 TEST(Resample, SharpEdge_OnTheBoundary_AndOneThatIsNotSplit) {
-    const TriangleMesh after = resampled_within(with_sharp_edges(rectangle(4, 1), {{0, 1}, {1, 2}}), 2.2).mesh;
-    // 0 to 2 is √17 long and is split at 4; then 0 to 1 at 5 and 2 to 3 at 6.
-    EXPECT_EQ(after.positions[5], Vec3(2, 0, 0));
-    EXPECT_THAT(after.sharp_edges.span(), ElementsAre(Edge{0, 5}, Edge{1, 2}, Edge{1, 5}));
+    const TriangleMesh after = resampled_within(with_sharp_edges(rectangle(4, 1), {{0, 1}, {1, 2}}), 2.3).mesh;
+    // The sides of length 1 are shorter than half of the limit: 0 to 1 is split at 4 and 2 to 3 at 5, before the
+// diagonal.
+    ASSERT_EQ(after.positions.size(), 6u);
+    EXPECT_EQ(after.positions[4], Vec3(2, 0, 0));
+    EXPECT_EQ(after.positions[5], Vec3(2, 1, 0));
+    EXPECT_THAT(after.sharp_edges.span(), ElementsAre(Edge{0, 4}, Edge{1, 2}, Edge{1, 4}));
 }
 
 TEST(Resample, VertexColumns_AreInterpolated_OrThoseOfTheLowerRow) {
@@ -404,9 +705,14 @@ TEST(ResampleRefuses, MorePointsThanPossible_BeforeItBegins) {
     EXPECT_THAT(error.sentence(), AllOf(HasSubstr(fmt::format("at least {:.0f} points", std::floor(least))),
                                         HasSubstr("0.01 u"), HasSubstr("50000000")));
     EXPECT_THAT(error.hint(), AllOf(HasSubstr("density"), HasSubstr("local")));
-    // A triangle without area: 10^9 units in steps of one.
+    // A triangle without area: two sides of 10^9 units in steps of one.
     const TriangleMesh needle = soup({{0, 0, 0}, {1e9, 0, 0}, {1e9, 0, 0}}, {{0, 1, 2}});
-    EXPECT_THAT(sentence_of([&] { resampled_within(needle, 1); }), HasSubstr("at least 999999999 points"));
+    EXPECT_THAT(sentence_of([&] { resampled_within(needle, 1); }), HasSubstr("at least 1999999998 points"));
+}
+
+TEST(Resample, LongEdgesThatFlipsRemove_DoNotCountAsPoints) {
+    // 200 edges in a square with the diagonal 14: one by one, they would need more than 2,000 points.
+    EXPECT_LT(resampled_within(fan(10, 100), 1, {}, 460).added, 460u);
 }
 
 TEST(ResampleRefuses, MorePointsThanPossible_WhenTheLimitIsReached) {
