@@ -28,9 +28,9 @@ std::vector<u32> removed_facets(const Model& model, std::span<const u32> discard
     return removed;
 }
 
-/// The facets that go, divided among the clouds.
+/// The facets that go, divided among the clouds. Points that are not among the rows are left out.
 std::vector<LocalChange> local_changes(const Model& model, std::span<const u32> removed,
-                                       std::span<const CloudPart> clouds) {
+                                       std::span<const CloudPart> clouds, std::span<const u32> rows) {
     const auto index_of = [&](u32 facet) {
         const auto found = std::ranges::lower_bound(removed, facet);
         return found != removed.end() && *found == facet ? static_cast<u32>(found - removed.begin()) : none;
@@ -54,7 +54,9 @@ std::vector<LocalChange> local_changes(const Model& model, std::span<const u32> 
     }
     for (u32 c = 0; c < clouds.size(); ++c) {
         LocalChange& change = changes[together.find(c)];
-        change.points.insert(change.points.end(), clouds[c].points.begin(), clouds[c].points.end());
+        for (const u32 point : clouds[c].points)
+            if (std::ranges::binary_search(rows, static_cast<u32>(model.mesh.positions.size()) + point))
+                change.points.push_back(point);
         change.spacing = std::max(change.spacing, clouds[c].spacing);
     }
     std::erase_if(changes, [](const LocalChange& change) { return change.points.empty(); });
@@ -92,7 +94,7 @@ Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std:
     const u32 model_vertices = static_cast<u32>(model.mesh.positions.size());
     const std::vector<u32> removed = removed_facets(model, discarded, groups);
     const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree, positions.subspan(model_vertices),
-                                              local_changes(model, removed, clouds), discarded, params, context);
+                                              local_changes(model, removed, clouds, rows), discarded, params, context);
     std::vector<bool> is_left_out(positions.size());
     for (const u32 vertex : part.dropped) is_left_out[vertex] = true;
     for (u32 row = model_vertices; row < positions.size(); ++row) is_left_out[row] = true;

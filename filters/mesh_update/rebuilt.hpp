@@ -30,7 +30,8 @@ struct CloudPart {
     double spacing;
 };
 
-/// rebuild_locally() around all clouds; `discarded`: vertices of the model, ascending. Facets that go and are connected
+/// rebuild_locally() around all clouds. `rows`: kept vertices and points that may be used, ascending; `discarded`: vertices
+/// of the model, ascending. Facets that go and are connected
 /// belong to one change, and so do all that a cloud replaces. Throws Error as rebuild_locally() does.
 Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
                        std::span<const u32> discarded, const Groups& groups, std::span<const CloudPart> clouds,
