@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <array>
 #include <cassert>
 #include <optional>
@@ -225,6 +226,20 @@ std::vector<Region> regions_of(const Given& given, std::span<const LocalChange> 
 // Step 2: the new surface.
 
 struct NewSurface {
+    explicit NewSurface(std::vector<Triangle> given) : triangles(std::move(given)) {
+        std::unordered_set<u64> crowded;
+        for (u32 row = 0; row < triangles.size(); ++row)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const u32 from = triangles[row][k], to = triangles[row][(k + 1) % 3];
+                if (from == invalid_index || to == invalid_index) continue;
+                if (!triangle_at.try_emplace(directed(from, to), row).second) crowded.insert(directed(from, to));
+            }
+        for (const u64 edge : crowded) {
+            triangle_at.erase(edge);
+            triangle_at.erase(reversed(edge));
+        }
+    }
+
     /// Corners are vertices of the given mesh, its number of vertices plus rows of points, or invalid_index for a far
     /// point.
     std::vector<Triangle> triangles;
@@ -319,23 +334,12 @@ NewSurface new_surface(const Given& given, const Region& region, const CoconePar
     cocones::Peeling peeling = cocones::peel(diagram, surface, cocones::SurfaceMesh(tets, surface), samples.flat,
                                              silent, known_inside(given, region, tets, vertices, surface));
 
-    NewSurface result;
-    std::unordered_set<u64> crowded;
+    std::vector<Triangle> triangles;
     for (Triangle triangle : mended_boundary(diagram, std::move(peeling.labels), is_mended, silent)) {
         for (u32& vertex : triangle) vertex = vertices[vertex];
-        const u32 row = static_cast<u32>(result.triangles.size());
-        result.triangles.push_back(triangle);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const u32 from = triangle[k], to = triangle[(k + 1) % 3];
-            if (from == invalid_index || to == invalid_index) continue;
-            if (!result.triangle_at.try_emplace(directed(from, to), row).second) crowded.insert(directed(from, to));
-        }
+        triangles.push_back(triangle);
     }
-    for (const u64 edge : crowded) {
-        result.triangle_at.erase(edge);
-        result.triangle_at.erase(reversed(edge));
-    }
-    return result;
+    return NewSurface(std::move(triangles));
 }
 
 // Step 3: the exchange.
@@ -590,6 +594,32 @@ LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> oppo
     sort_unique(used);
     result.unused_points = given_points.size() - used.size();
     return result;
+}
+
+std::optional<LocalRebuild> exchanged(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
+                                      std::span<const Vec3> points, std::span<const u32> removed,
+                                      std::span<const Triangle> surface, Context& context) {
+    const Given given{mesh, opposite, tree, points, {}};
+    std::vector<Region> regions(1);
+    Region& all = regions[0];
+    all.removed.assign(removed.begin(), removed.end());
+    all.core.resize(mesh.triangles.size());
+    std::iota(all.core.begin(), all.core.end(), u32(0));
+    all.core_vertices = given.vertices_of(all.core);
+    try {
+        const NewSurface closed(std::vector<Triangle>(surface.begin(), surface.end()));
+        Exchange exchange(given, all, closed);
+        exchange.run(context);
+        LocalRebuild result;
+        result.replaced = std::move(exchange.replaced);
+        std::ranges::sort(result.replaced);
+        for (const u32 row : exchange.taken) result.triangles.push_back(closed.triangles[row]);
+        check_vertices(given, regions, result, context);
+        if (!result.triangles.empty()) check_intersections(given, result, context);
+        return result;
+    } catch (const Error&) {
+        return std::nullopt;  // no seam
+    }
 }
 
 }  // namespace scanmill::updating

@@ -25,6 +25,7 @@
 /// of 2 to 10 edges that stay clear of the rest of the mesh: of 375 on 22 meshes made by tight-cocone 1.6 % were
 /// refused, all at sharp edges and thin walls; of 252 on 15 other meshes 3.2 %.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,5 +72,15 @@ struct LocalRebuild {
 LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
                              std::span<const Vec3> points, std::span<const LocalChange> changes,
                              std::span<const u32> discarded, const CoconeParams& params, Context& context);
+
+/// Exchanges facets for those of a given closed surface through vertices of the mesh and points, beginning with the removed
+/// ones, as step 3 does. So facets that the surface joins in another way, far from the change, stay. Without a value if
+/// the result would break a promise of rebuild_locally(), or if nothing of a component of the mesh would stay.
+///
+/// `removed`: facets of the mesh, ascending, among them all facets at vertices that are not in the surface by intent.
+/// Corners of `surface`: vertices of the mesh, or its number of vertices plus rows of points. Cost: linear in both.
+std::optional<LocalRebuild> exchanged(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
+                                      std::span<const Vec3> points, std::span<const u32> removed,
+                                      std::span<const Triangle> surface, Context& context);
 
 }  // namespace scanmill::updating

@@ -534,7 +534,7 @@ private:
         find_expected_euler(model);
         const auto rebuilt_from = [&](const Array<u32>& chosen) {
             return params_.rebuild == MeshUpdateParams::Rebuild::whole
-                       ? rebuild_whole(model, all, chosen, params_, context_)
+                       ? rebuild_whole(model, all, chosen, discarded, segmentation_, params_, context_)
                        : rebuild_around(model, all, chosen, discarded, segmentation_, parts(), params_, context_);
         };
         Rebuilt rebuilt = rebuilt_from(rows);

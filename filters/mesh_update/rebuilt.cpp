@@ -63,46 +63,17 @@ std::vector<LocalChange> local_changes(const Model& model, std::span<const u32> 
     return changes;
 }
 
-}  // namespace
-
-Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
-                      const TightCoconeParams& params, Context& context) {
-    PointCloud points;
-    points.frame = model.mesh.frame;
-    Array<Vec3> chosen;
-    chosen.reserve(rows.size());
-    for (const u32 row : rows) chosen.push_back(positions[row]);
-    points.positions = std::move(chosen);
-    points.columns.add(Column(row_column, 1, Buffer<u32>(Array<u32>(rows.begin(), rows.end()))));
-    NestedContext first(context, 0.4, 0.6), second(context, 0.6, 0.9);
-    const DelaunayResult tets = delaunay(points, {}, first);
-    const TightCoconeResult solid = tight_cocone(tets.tets, params, second);
-    Rebuilt result;
-    for (const Context* nested : {static_cast<const Context*>(&first), static_cast<const Context*>(&second)})
-        result.warnings.insert(result.warnings.end(), nested->warnings().begin(), nested->warnings().end());
-    const std::span<const u32> row_of = solid.mesh.vertex_columns.find(row_column)->values<u32>();
-    result.rows.assign(row_of.begin(), row_of.end());
-    result.triangles.assign(solid.mesh.triangles.begin(), solid.mesh.triangles.end());
-    result.replaced.resize(model.mesh.triangles.size());
-    std::iota(result.replaced.begin(), result.replaced.end(), u32(0));
-    return result;
-}
-
-Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
-                       std::span<const u32> discarded, const Groups& groups, std::span<const CloudPart> clouds,
-                       const CoconeParams& params, Context& context) {
+/// The model with its exchanged facets. `points`: number of all positions.
+Rebuilt assembled(const Model& model, const LocalRebuild& part, std::span<const u32> rows, std::size_t positions) {
     const u32 model_vertices = static_cast<u32>(model.mesh.positions.size());
-    const std::vector<u32> removed = removed_facets(model, discarded, groups);
-    const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree, positions.subspan(model_vertices),
-                                              local_changes(model, removed, clouds, rows), discarded, params, context);
-    std::vector<bool> is_left_out(positions.size());
+    std::vector<bool> is_left_out(positions);
     for (const u32 vertex : part.dropped) is_left_out[vertex] = true;
-    for (u32 row = model_vertices; row < positions.size(); ++row) is_left_out[row] = true;
+    for (u32 row = model_vertices; row < positions; ++row) is_left_out[row] = true;
     for (const Triangle& t : part.triangles)
         for (const u32 vertex : t)
             if (vertex >= model_vertices) is_left_out[vertex] = false;
     Rebuilt result;
-    std::vector<u32> number(positions.size(), none);
+    std::vector<u32> number(positions, none);
     for (const u32 row : rows) {
         if (is_left_out[row]) continue;
         number[row] = static_cast<u32>(result.rows.size());
@@ -123,6 +94,51 @@ Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std:
     result.fixed = result.triangles.size();
     for (const Triangle& t : part.triangles) add(t);
     return result;
+}
+
+}  // namespace
+
+Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
+                      std::span<const u32> discarded, const Groups& groups, const TightCoconeParams& params,
+                      Context& context) {
+    PointCloud points;
+    points.frame = model.mesh.frame;
+    Array<Vec3> chosen;
+    chosen.reserve(rows.size());
+    for (const u32 row : rows) chosen.push_back(positions[row]);
+    points.positions = std::move(chosen);
+    points.columns.add(Column(row_column, 1, Buffer<u32>(Array<u32>(rows.begin(), rows.end()))));
+    NestedContext first(context, 0.4, 0.6), second(context, 0.6, 0.85);
+    const DelaunayResult tets = delaunay(points, {}, first);
+    const TightCoconeResult solid = tight_cocone(tets.tets, params, second);
+    const std::span<const u32> row_of = solid.mesh.vertex_columns.find(row_column)->values<u32>();
+    std::vector<Triangle> surface(solid.mesh.triangles.begin(), solid.mesh.triangles.end());
+    for (Triangle& t : surface)
+        for (u32& vertex : t) vertex = row_of[vertex];
+    Rebuilt result;
+    if (const std::optional<LocalRebuild> part =
+            exchanged(model.mesh, model.opposite, model.tree, positions.subspan(model.mesh.positions.size()),
+                      removed_facets(model, discarded, groups), surface, context)) {
+        result = assembled(model, *part, rows, positions.size());
+    } else {
+        result.rows.assign(row_of.begin(), row_of.end());
+        result.triangles.assign(solid.mesh.triangles.begin(), solid.mesh.triangles.end());
+        result.replaced.resize(model.mesh.triangles.size());
+        std::iota(result.replaced.begin(), result.replaced.end(), u32(0));
+    }
+    for (const Context* nested : {static_cast<const Context*>(&first), static_cast<const Context*>(&second)})
+        result.warnings.insert(result.warnings.end(), nested->warnings().begin(), nested->warnings().end());
+    return result;
+}
+
+Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
+                       std::span<const u32> discarded, const Groups& groups, std::span<const CloudPart> clouds,
+                       const CoconeParams& params, Context& context) {
+    const std::vector<u32> removed = removed_facets(model, discarded, groups);
+    const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree,
+                                              positions.subspan(model.mesh.positions.size()),
+                                              local_changes(model, removed, clouds, rows), discarded, params, context);
+    return assembled(model, part, rows, positions.size());
 }
 
 }  // namespace scanmill::updating

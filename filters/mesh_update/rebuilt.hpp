@@ -18,10 +18,13 @@ struct Rebuilt {
     std::vector<std::string> warnings;
 };
 
-/// tight_cocone() of the points at these rows, with its warnings. Its doubts are left out, because they expect an even
-/// sampling of the whole surface. Reports progress from 0.4 to 0.9. Throws Error as delaunay() and tight_cocone() do.
+/// tight_cocone() of the points at these rows, with its warnings. Where it only joins vertices of the model in another
+/// way, the facets of the model stay; see exchanged(). If the two surfaces have no seam, tight cocone's is the result. Its
+/// doubts are left out, because they expect an even sampling of the whole surface. Reports progress from 0.4 to 0.85.
+/// Throws Error as delaunay() and tight_cocone() do.
 Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
-                      const TightCoconeParams& params, Context& context);
+                      std::span<const u32> discarded, const Groups& groups, const TightCoconeParams& params,
+                      Context& context);
 
 /// What one cloud, or several that count as one, replace.
 struct CloudPart {
