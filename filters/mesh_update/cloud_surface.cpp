@@ -10,6 +10,7 @@
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/data/point_tree.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
@@ -48,6 +49,40 @@ Buffer<Vec3> spatial(const Buffer<Vec3>& positions, const Frame& frame, Context&
     return moved;
 }
 
+/// Whether most of a loop runs along another component of the surface. The surface of a cloud may break at sharp edges,
+/// where it does not end.
+class Cracks {
+public:
+    Cracks(const TriangleMesh& mesh, std::span<const u32> component, double spacing, unsigned threads)
+        : mesh_(mesh),
+          distance_(width * spacing),
+          tree_(mesh.positions.span(), threads),
+          component_(tree_.positions().size(), ~u32(0)) {
+        for (u32 t = 0; t < mesh.triangles.size(); ++t)
+            for (const u32 vertex : mesh.triangles[t]) component_[tree_.index_of_row()[vertex]] = component[t];
+    }
+
+    bool contains(std::span<const u32> loop) {
+        std::size_t near = 0;
+        for (const u32 h : loop) {
+            const u32 own = tree_.index_of_row()[half_edges::start(mesh_, h)];
+            const std::span<const Neighbour> around = tree_.within(own, distance_ * distance_, buffer_);
+            near += std::ranges::any_of(
+                around, [&](const Neighbour& other) { return component_[other.index] != component_[own]; });
+        }
+        return 2 * near > loop.size();
+    }
+
+private:
+    static constexpr double width = 2;  ///< of a crack, in spacings of the cloud
+
+    const TriangleMesh& mesh_;
+    double distance_;
+    PointTree tree_;
+    std::vector<u32> component_;  ///< by position
+    NeighbourBuffer buffer_;
+};
+
 void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
     const TriangleMesh& mesh = surface.mesh;
     const std::vector<Array<u32>> loops = boundary_loops(mesh, opposite);
@@ -66,11 +101,12 @@ void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
         double& length = longest[component[loops[i][0] / 3]];
         length = std::max(length, shapes[i].length);
     }
+    Cracks cracks(mesh, component, surface.spacing, 1);
     const double all = longest.empty() ? 0 : *std::ranges::max_element(longest);
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double own = longest[component[loops[i][0] / 3]];
-        const bool is_used =
-            loops[i].size() >= least_edges && own >= least_share * all && shapes[i].length >= least_share * own;
+        const bool is_used = loops[i].size() >= least_edges && own >= least_share * all &&
+                             shapes[i].length >= least_share * own && !cracks.contains(loops[i]);
         if (is_used)
             surface.loops.push_back(
                 {loops[i], shapes[i].length, !is_outer[i] && (shapes[i].clear || shapes[i].length < hole_share * own)});

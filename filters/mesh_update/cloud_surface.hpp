@@ -35,8 +35,8 @@ struct CloudSurface {
 };
 
 /// The longest loop of every component of the surface is used, and its other loops if they have at least a tenth of
-/// that length: those are shown by the cloud, the rest are pinholes of its surface. Loops of fewer than 8 edges, and
-/// components whose longest loop is shorter than a tenth of the cloud's longest, are ignored.
+/// that length; the rest are pinholes. Ignored are loops of fewer than 8 edges, components whose longest loop is
+/// shorter than a tenth of the cloud's longest, and loops of which most runs within two spacings of another component.
 ///
 /// Pre: finite positions. Throws Error for a cloud without a surface or without a boundary.
 /// Ties: of equally long loops, the first.

@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
 #include <array>
 #include <cassert>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>

@@ -73,9 +73,9 @@ LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> oppo
                              std::span<const Vec3> points, std::span<const LocalChange> changes,
                              std::span<const u32> discarded, const CoconeParams& params, Context& context);
 
-/// Exchanges facets for those of a given closed surface through vertices of the mesh and points, beginning with the removed
-/// ones, as step 3 does. So facets that the surface joins in another way, far from the change, stay. Without a value if
-/// the result would break a promise of rebuild_locally(), or if nothing of a component of the mesh would stay.
+/// Exchanges facets for those of a given closed surface through vertices of the mesh and points, beginning with the
+/// removed ones, as step 3 does. So facets that the surface joins in another way, far from the change, stay. Without a
+/// value if the result would break a promise of rebuild_locally(), or if nothing of a component of the mesh would stay.
 ///
 /// `removed`: facets of the mesh, ascending, among them all facets at vertices that are not in the surface by intent.
 /// Corners of `surface`: vertices of the mesh, or its number of vertices plus rows of points. Cost: linear in both.

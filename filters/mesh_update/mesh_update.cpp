@@ -59,6 +59,7 @@ struct CloudGroup {
     CloudSurface surface;
     std::vector<LoopOverlap> loops;  ///< of the loops of the surface that are used
     CloudAngles angles;
+    double offset = 0;  ///< largest median distance of a loop's points from their overlap facets
 };
 
 void require_parameters(const MeshUpdateParams& params) {
@@ -113,11 +114,20 @@ public:
         for (const CloudGroup& group : groups_) least = std::min(least, group.surface.spacing);
         const double longest = params_.density * least;
         max_distance_ = resolved_max_distance(longest);
+        FacetTree tree = facet_tree(given_, longest);
+        find_far_clouds(tree);
+        if (!result_.doubt.empty()) {
+            segmentation_.of_facet.assign(given_.triangles.size(), Groups::overlap);
+            keep({given_, std::move(opposites), std::move(tree)});
+            report();
+            return std::move(result_);
+        }
         const Resampled resampled = resample(longest);
         result_.resampled = resampled.added;
         if (resampled.added > 0) opposites = half_edges::opposites(resampled.mesh);
         context_.check_cancelled();
-        const Model model(resampled.mesh, std::move(opposites), facet_tree(resampled.mesh, longest));
+        const Model model(resampled.mesh, std::move(opposites),
+                          resampled.added > 0 ? facet_tree(resampled.mesh, longest) : std::move(tree));
         refuse_intersections(model);
         context_.progress(0.3);
         context_.metric("model-seconds", watch_.lap(), Unit::seconds);
@@ -321,10 +331,31 @@ private:
         }
     }
 
+    /// Doubts clouds in another unit or position before the model is split for them, which could take minutes.
+    void find_far_clouds(const FacetTree& tree) {
+        u32 hint = NearestTriangle::none;
+        for (CloudGroup& group : groups_)
+            for (const CloudLoop& loop : group.surface.loops) {
+                LoopOverlap overlap;
+                overlap.edges.resize(loop.half_edges.size());
+                for (const u32 h : loop.half_edges) {
+                    const Vec3& point = group.surface.mesh.positions[half_edges::start(group.surface.mesh, h)];
+                    const NearestTriangle nearest = tree.nearest(point, hint);
+                    hint = nearest.slot;
+                    add_distance(overlap, point, std::sqrt(nearest.squared_distance), max_distance_);
+                }
+                if (hangs(overlap)) lies_on_model(group, loop, overlap);
+            }
+    }
+
+    static bool hangs(const LoopOverlap& overlap) {
+        return static_cast<double>(overlap.hanging) > largest_hanging * static_cast<double>(overlap.edges.size());
+    }
+
     /// Whether the loop is used; a loop that is no hole and does not lie on the model is a doubt.
-    bool lies_on_model(const CloudGroup& group, const CloudLoop& loop, LoopOverlap& overlap) {
+    bool lies_on_model(CloudGroup& group, const CloudLoop& loop, LoopOverlap& overlap) {
         const std::size_t points = overlap.edges.size();
-        if (static_cast<double>(overlap.hanging) > largest_hanging * static_cast<double>(points)) {
+        if (hangs(overlap)) {
             if (!loop.is_hole)
                 doubt("hanging", group, overlap.farthest,
                       fmt::format("{} of {} points of a loop are farther than max-distance, {:.4g} {}, from the model, "
@@ -335,7 +366,9 @@ private:
                       "unchanged model along its whole border");
             return false;
         }
-        const double offset = median(overlap.offsets), allowed = largest_offset * group.surface.spacing;
+        const double offset = median(overlap.offsets);
+        group.offset = std::max(group.offset, offset);
+        const double allowed = largest_offset * group.surface.spacing;
         if (offset > allowed) {
             if (!loop.is_hole)
                 doubt(
@@ -386,8 +419,12 @@ private:
         std::vector<u32> fragments;
         for (CloudGroup& group : groups_) {
             if (group.loops.empty()) {
-                doubt("hanging", group, group.positions[0], "none of its loops lies on the model",
-                      "the scan must overlap the unchanged model along its whole border");
+                doubt("hanging", group, group.positions[0],
+                      fmt::format("none of the {} of its surface lies on the model",
+                                  count_text(group.surface.ignored_loops, "border loop", "border loops")),
+                      "remove outliers by outlier-removal; scan more densely where the part is thin; the scan must "
+                      "overlap "
+                      "the unchanged model along its whole border");
                 continue;
             }
             group.angles = mean_angles(model, segmentation_, group.surface, group.loops, context_);
@@ -396,7 +433,7 @@ private:
                 doubt("no separation", group, group.angles.undivided_at,
                       fmt::format("a loop of {} edges does not divide the model", loop.half_edges.size()),
                       "the border of the cloud must surround the change on the model; a scan on both sides of a handle "
-                      "does not");
+                      "does not; for a narrow cloud, lower `density`");
             }
             const Choice choice = chosen_groups(group.angles, params_.angle_gap.in_radians());
             if (!choice.ambiguity.empty())
@@ -430,6 +467,7 @@ private:
                 result_.angles.push_back(
                     {group.numbers[0] + 1, angle.group + 1, angle.mean, bool(is_replaced_[angle.group])});
         require_kept_groups(model);
+        warn_of_kept_holes();
     }
 
     /// Groups on the side of the model that the cloud replaces, behind the barriers of other clouds. A cloud replaces
@@ -461,6 +499,17 @@ private:
                     break;
                 }
         return found;
+    }
+
+    /// What no cloud shows is kept, also inside a cloud.
+    void warn_of_kept_holes() {
+        if (!result_.doubt.empty()) return;
+        for (const CloudGroup& group : groups_)
+            for (const CloudLoop& loop : group.surface.loops)
+                if (loop.is_hole)
+                    context_.warn(fmt::format("{} has a hole of {} edges at {}; the model is kept there",
+                                              name_of(group), loop.half_edges.size(),
+                                              position_text(loop_start(group, loop), given_.frame)));
     }
 
     /// Something must stay in every component of the model that loses a group.
@@ -528,6 +577,9 @@ private:
             if (is_used[vertex]) (discarded_[vertex] == 1 ? discarded : rows).push_back(vertex);
         result_.discarded = discarded.size();
         result_.kept = rows.size();
+        if (rows.empty())
+            throw Error("no vertex of the model is kept: {} are discarded", discarded.size())
+                .hint("lower `trim`; a scan of the whole object needs no model: use delaunay and tight-cocone");
         Array<Vec3> all(model.mesh.positions.begin(), model.mesh.positions.end());
         all.insert(all.end(), positions_.begin(), positions_.end());
         for (std::size_t i = model_vertices; i < all.size(); ++i) rows.push_back(static_cast<u32>(i));
@@ -568,7 +620,9 @@ private:
     void doubt_points(const Rebuilt& rebuilt, std::size_t model_vertices) {
         if (params_.noise == MeshUpdateParams::Noise::big_balls) return;  // leaves points out by design
         const auto first = std::ranges::lower_bound(rebuilt.rows, static_cast<u32>(model_vertices));
-        const std::size_t unused = result_.added - static_cast<std::size_t>(rebuilt.rows.end() - first);
+        const std::size_t used = static_cast<std::size_t>(rebuilt.rows.end() - first);
+        const std::size_t distinct = PointTree(positions_, context_.threads()).positions().size();
+        const std::size_t unused = distinct - std::min(distinct, used);
         if (static_cast<double>(unused) > most_unused * static_cast<double>(result_.added))
             context_.doubt(fmt::format("{} of {} points of the clouds are not on the surface: they are noisy, or not "
                                        "registered with the model",
@@ -674,6 +728,8 @@ private:
             edges += group.surface.boundary_edges;
             paper += group.surface.paper_edges;
         }
+        for (std::size_t i = 0; i < groups_.size(); ++i)
+            context_.metric(numbered("border-offset", i + 1), groups_[i].offset, Unit::length);
         for (std::size_t i = 0; i < result_.angles.size(); ++i) {
             const MeshUpdateAngle& angle = result_.angles[i];
             context_.metric(numbered("mean-angle", i + 1), angle.mean, Unit::angle);

@@ -126,14 +126,8 @@ LoopOverlap overlap_of(const Model& model, const CloudSurface& cloud, const Clou
         const Vec3 point = start(h);
         hits.push_back(tracer.nearest(point));
         const Hit& hit = hits.back();
-        if (hit.distance > result.farthest_distance) {
-            result.farthest_distance = hit.distance;
-            result.farthest = point;
-        }
-        if (!tracer.is_near(hit)) {
-            ++result.hanging;
-            continue;
-        }
+        add_distance(result, point, hit.distance, max_distance);
+        if (!tracer.is_near(hit)) continue;
         const Projection projection = project(point, model.corners(hit.facet));
         // Beside an edge or a vertex, the nearest point is not the foot on the plane.
         result.offsets.push_back(projection.is_inside ? std::abs(projection.distance) : hit.distance);

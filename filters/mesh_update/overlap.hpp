@@ -44,6 +44,15 @@ struct LoopOverlap {
     double farthest_distance = 0;
 };
 
+/// Counts a boundary point at this distance from the model.
+inline void add_distance(LoopOverlap& overlap, const Vec3& point, double distance, double max_distance) {
+    if (distance > overlap.farthest_distance) {
+        overlap.farthest_distance = distance;
+        overlap.farthest = point;
+    }
+    overlap.hanging += distance > max_distance;
+}
+
 /// `max_distance`: boundary points farther from the model have no overlap facet.
 /// Ties: of equally near facets, that with the lowest row.
 /// Cost: O(log F) per boundary edge, and the facets under it.

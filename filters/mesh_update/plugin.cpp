@@ -82,6 +82,9 @@ SCANMILL_FILTER() {
         .metric("remeshed", Unit::count,
                 "New triangles without a point of a cloud: vertices of the model, joined anew.", smaller_is_better)
         .metric("loops", Unit::count, "Border loops of the clouds that were used.")
+        .metric("border-offset", Unit::length,
+                "Median distance of border points from the model, the largest of the loops of each cloud.", numbered,
+                smaller_is_better)
         .metric("ignored-loops", Unit::count, "Border loops that are small or do not lie on the model.")
         .metric("boundary-edges", Unit::count, "Edges of the clouds' surfaces in one triangle.")
         .metric("paper-edges", Unit::count, "Edges of the clouds' surfaces between two boundary points of cocone.")

@@ -135,9 +135,9 @@ Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std:
                        std::span<const u32> discarded, const Groups& groups, std::span<const CloudPart> clouds,
                        const CoconeParams& params, Context& context) {
     const std::vector<u32> removed = removed_facets(model, discarded, groups);
-    const LocalRebuild part = rebuild_locally(model.mesh, model.opposite, model.tree,
-                                              positions.subspan(model.mesh.positions.size()),
-                                              local_changes(model, removed, clouds, rows), discarded, params, context);
+    const LocalRebuild part =
+        rebuild_locally(model.mesh, model.opposite, model.tree, positions.subspan(model.mesh.positions.size()),
+                        local_changes(model, removed, clouds, rows), discarded, params, context);
     return assembled(model, part, rows, positions.size());
 }
 

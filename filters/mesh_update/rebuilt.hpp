@@ -19,9 +19,9 @@ struct Rebuilt {
 };
 
 /// tight_cocone() of the points at these rows, with its warnings. Where it only joins vertices of the model in another
-/// way, the facets of the model stay; see exchanged(). If the two surfaces have no seam, tight cocone's is the result. Its
-/// doubts are left out, because they expect an even sampling of the whole surface. Reports progress from 0.4 to 0.85.
-/// Throws Error as delaunay() and tight_cocone() do.
+/// way, the facets of the model stay; see exchanged(). If the two surfaces have no seam, tight cocone's is the result.
+/// Its doubts are left out, because they expect an even sampling of the whole surface. Reports progress from 0.4 to
+/// 0.85. Throws Error as delaunay() and tight_cocone() do.
 Rebuilt rebuild_whole(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
                       std::span<const u32> discarded, const Groups& groups, const TightCoconeParams& params,
                       Context& context);
@@ -33,9 +33,9 @@ struct CloudPart {
     double spacing;
 };
 
-/// rebuild_locally() around all clouds. `rows`: kept vertices and points that may be used, ascending; `discarded`: vertices
-/// of the model, ascending. Facets that go and are connected
-/// belong to one change, and so do all that a cloud replaces. Throws Error as rebuild_locally() does.
+/// rebuild_locally() around all clouds. `rows`: kept vertices and points that may be used, ascending; `discarded`:
+/// vertices of the model, ascending. Facets that go and are connected belong to one change, and so do all that a cloud
+/// replaces. Throws Error as rebuild_locally() does.
 Rebuilt rebuild_around(const Model& model, std::span<const Vec3> positions, std::span<const u32> rows,
                        std::span<const u32> discarded, const Groups& groups, std::span<const CloudPart> clouds,
                        const CoconeParams& params, Context& context);

@@ -103,7 +103,10 @@ TriangleMesh updated_mesh(const Model& model, std::span<const std::shared_ptr<co
     std::vector<std::shared_ptr<const PointCloud>> all{std::make_shared<const PointCloud>(vertices_of(model.mesh))};
     all.insert(all.end(), clouds.begin(), clouds.end());
     mesh.vertex_columns = merging::merged_columns(all, {}, context).gather(rebuilt.rows);
-    warn_of_dropped(model.mesh.face_columns, "face columns", "new triangles have no values", context);
+    ColumnTable faces;
+    for (const Column& column : model.mesh.face_columns)
+        if (column.name() != "updated") faces.add(column);
+    warn_of_dropped(faces, "face columns", "new triangles have no values", context);
     warn_of_dropped(model.mesh.edge_columns, "edge columns", "new edges have no values", context);
     const Array<std::int32_t> numbers = group_numbers(model, groups);
     Array<std::int32_t> group;
