@@ -65,8 +65,8 @@ hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmil
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
-# Further filters of surfaces.py and woo_dey_table_1.py.
-surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson
+# Further filters of surfaces.py, woo_dey_table_1.py and woo_dey_updates.py.
+surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson scanmill-mesh-update
 
 bench-quality: deps ## compare our results with trimesh, Open3D, four papers and other decimations: LARGE=1
 	tools/deps.sh bench
@@ -85,6 +85,9 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill --rebuild local
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

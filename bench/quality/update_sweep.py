@@ -7,7 +7,8 @@ noise (update_cases.py). The judge compares the updated mesh with the exact bool
 (update_judge.py). Writes update-sweep.md and .json, with --rebuild local update-sweep-local.md and .json. The exit code
 is 1 if a mesh is wrong in silence, or if the program gave no answer.
 
-Cases are kept in build/peers/update-sweep until the scripts that make them change.
+Cases, and the models that tight-cocone makes for them, are kept in build/peers/update-sweep until the scripts that make
+them change. So every version of the program gets the same cases; after the folder is removed, they are made anew.
 """
 from __future__ import annotations
 
@@ -34,7 +35,9 @@ from tables.ply import write_ply  # noqa: E402
 from update_cases import Case, Model  # noqa: E402
 
 WORKFLOW = BENCH / "quality" / "mesh-update.yaml"
+KEPT = BENCH.parent / "build" / "peers" / "update-sweep"
 SOURCES = ("update_solids.py", "update_cases.py")
+SOURCES_OF_MODELS = ("update_solids.py", "update_models.py", "woo-dey-cloud.yaml")
 SEED = 2005
 METRICS = ("initial", "resampled", "added", "discarded", "kept", "unused-points", "groups", "replaced", "loops")
 
@@ -54,11 +57,35 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def hash_of(sources: tuple[str, ...]) -> hashlib._Hash:
+    found = hashlib.sha256()
+    for source in sources:
+        found.update((BENCH / "quality" / source).read_bytes())
+    return found
+
+
+def models_of(options: argparse.Namespace, folder: pathlib.Path) -> tuple[dict[str, list[Model]], list[str]]:
+    """The models by tight-cocone, and sentences about those that are missing; the kept ones if all files were there."""
+    file = KEPT / f"models-{hash_of(SOURCES_OF_MODELS).hexdigest()[:16]}.pickle"
+    if file.exists():
+        return pickle.loads(file.read_bytes())
+    found = update_models.made_by_tight_cocone(options, folder)
+    if set(found[0]) == set(update_models.SCANNED):
+        keep(file, found)
+    return found
+
+
+def keep(file: pathlib.Path, value: object) -> None:
+    """Writes the file whole or not at all."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_suffix(".part")
+    part.write_bytes(pickle.dumps(value))
+    part.replace(file)
+
+
 def digest(prebuilt: dict[str, list[Model]]) -> str:
     """Changes whenever the cases may change."""
-    found = hashlib.sha256()
-    for source in SOURCES:
-        found.update((BENCH / "quality" / source).read_bytes())
+    found = hash_of(SOURCES)
     for name, models in prebuilt.items():
         found.update(name.encode())
         for model in models:
@@ -71,9 +98,7 @@ def case_of(options: argparse.Namespace, index: int, prebuilt: dict[str, list[Mo
     if file.exists():
         return pickle.loads(file.read_bytes())
     case, _ = update_cases.case_of(options.seed, index, prebuilt)
-    part = file.with_suffix(".part")
-    part.write_bytes(pickle.dumps(case))
-    part.replace(file)
+    keep(file, case)
     return case
 
 
@@ -165,11 +190,10 @@ def main() -> int:
         work = options.keep or pathlib.Path(temporary)
         work.mkdir(parents=True, exist_ok=True)
         try:
-            prebuilt, missing = update_models.made_by_tight_cocone(options, pathlib.Path(temporary) / "models")
+            prebuilt, missing = models_of(options, pathlib.Path(temporary) / "models")
         except scanmill.Broken as broken:
             sys.exit(f"error: {broken}")
-        cache = BENCH.parent / "build" / "peers" / "update-sweep" / digest(prebuilt)
-        cache.mkdir(parents=True, exist_ok=True)
+        cache = KEPT / digest(prebuilt)
         records = all_records(options, indices, prebuilt, cache, work)
     results = {**page.described("bench/quality/update_sweep.py"), "load": load.described(), "seed": options.seed,
                "rebuild": options.rebuild, "missing": missing, "cases": records}

@@ -22,8 +22,20 @@ most {update_cases.SHIFT:g} h, an error of registration, and each by noise with 
 {update_cases.NOISE:g} h per coordinate. Features are {update_cases.WIDTH[0]:g} to {update_cases.WIDTH[1]:g} h wide,
 clouds have {update_cases.POINTS[0]:,} to {update_cases.POINTS[1]:,} points, models that are not CAD models about
 {update_cases.VERTICES[0]:,} to {update_cases.VERTICES[1]:,} vertices. Walls are at least {update_cases.WALL:g} spacings
-thick, of the coarser sampling on their sides. The *ratio* is that of the points per area of the cloud to the vertices
-per area of the model. CAD models have few vertices, which the filter resamples.
+thick, of the coarser sampling on their sides; {100 * update_cases.THIN_SHARE:g} % of the cloud may lie on thinner ones,
+as beside convex edges. The *ratio* is that of the points per area of the cloud to the vertices per area of the model.
+CAD models have few vertices, which the filter resamples.
+
+Three rules keep cases away that no program could decide, or that are not local changes. Draws that break one are drawn
+again:
+
+- a cloud covers at most {100 * update_cases.LARGEST_SHARE:g} % of the surface, and a feature is at most
+  {100 * update_cases.THICKEST_SHARE:g} % as wide as the model's shortest extent;
+- a cloud has one rim, that of a through-hole two: both the outermost band of the cloud, {update_cases.BAND:g} h wide,
+  and the band of the model beside it have as many connected components as there are rims, and the latter does not have
+  far fewer points, as where the rim nearly meets itself;
+- the change replaces one connected part of the model by one, of a through-hole two parts by one, and adds no other
+  handle.
 
 A mesh is **right** if
 
