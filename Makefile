@@ -86,8 +86,8 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill --rebuild local
+	$(if $(LARGE),$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill)
+	$(if $(LARGE),$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill --rebuild local)
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

@@ -25,7 +25,6 @@
 #include "render/render.hpp"
 #include "repair/repair.hpp"
 #include "scanmill/data/bounds.hpp"
-#include "scanmill/data/spacing.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/certified_hausdorff.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
@@ -279,7 +278,6 @@ Json load_model(Held& held, const Json& request) {
 Json updated(Held& held, const Json& request) {
     Context context = context_for(request);
     MeshUpdateParams params;
-    params.max_distance = 3 * edge_spacing(held.model);
     if (request.at("rebuild") == "local") params.rebuild = MeshUpdateParams::Rebuild::local;
     MeshUpdateResult result;
     const double seconds = peers::seconds_of([&] { result = mesh_update(held.model, held.scans, params, context); });
