@@ -35,8 +35,8 @@ part within {RADIUS:g} u of the middle of the underside.
 
 *mean* and *largest* are distances of Stanford's merged points from the mesh, in percent of the diagonal, *recall* is
 the share of them nearer than 0.5 % of it. The underside has two real holes, and no view shows their walls: the new
-surface there is a guess, and the genus depends on it. *deviation* is the largest distance of a new point from the model,
-in percent of the diagonal."""
+surface there is a guess, and the genus depends on it. *deviation* is the largest distance of a new point from the
+model, in percent of the diagonal."""
 
 
 def points_of(options: Namespace, views: list[pathlib.Path], folder: pathlib.Path) -> numpy.ndarray:
@@ -59,7 +59,8 @@ def update(options: Namespace, model: pathlib.Path, cloud: pathlib.Path, rebuild
                           inputs={"clouds": cloud}, settings={"rebuild": rebuild})
     cell = report["cells"][0]
     if cell["outcome"] not in ("ok", "doubtful"):
-        return {"outcome": cell.get("cause", cell["outcome"]), "reasons": [str(cell.get("error", "")).partition("\n")[0]]}
+        reason = str(cell.get("error", "")).partition("\n")[0]
+        return {"outcome": cell.get("cause", cell["outcome"]), "reasons": [reason]}
     step = scanmill.steps(report, cell)["mesh-update"]
     metrics = step["metrics"]
     facts = judged(options, pathlib.Path(scanmill.mesh(cell)["file"]), truth)

@@ -252,6 +252,8 @@ def run(options: Namespace, folder: pathlib.Path) -> dict:
                                           threads=1 if threads == "1" else 0, settings={"rebuild": rebuild},
                                           inputs={"clouds": ",".join(str(cloud) for cloud in case.clouds)})
                     paper.take(into, judged(report, case), threads)
+                    if into["failure"] and report["cells"][0].get("cause") != "refused":  # a local rebuild may refuse
+                        entry["failure"] = into["failure"]
     return {"updates": entries, "view": left_out_view.record(options, folder / "view")}
 
 
