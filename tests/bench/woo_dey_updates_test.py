@@ -43,7 +43,8 @@ class Solids(unittest.TestCase):
         self.assertAlmostEqual(parts[0].changed().area / (2 * numpy.pi * 9 * 20), 1, delta=1e-3)
 
     def test_points_are_as_many_as_asked_and_on_the_solid(self):
-        points = updates.exactly(1_000, 6, lambda spacing, random: updates.spread(solids.box((1, 1, 1)), spacing, random))
+        box = solids.box((1, 1, 1))
+        points = updates.exactly(1_000, 6, lambda spacing, random: updates.spread(box, spacing, random))
         self.assertEqual(points.shape, (1_000, 3))
         self.assertAlmostEqual(numpy.abs(numpy.abs(points).max(axis=1) - 0.5).max(), 0, delta=1e-12)
 
@@ -117,7 +118,8 @@ class Sweep(unittest.TestCase):
         machine = {"processor": "p", "cores": 1, "memory_gibibytes": 1, "system": "s", "kernel": "k"}
         load = {"others_cores": 0, "stolen_cpu_seconds": 0, "took_seconds": 1}
         results = {"date": "", "command": "", "revision": "", "machine": machine, "load": load, "seed": 7,
-                   "rebuild": "whole", "missing": [], "cases": [self.record("right"), self.record("wrong", reason="torn")]}
+                   "rebuild": "whole", "missing": [],
+                   "cases": [self.record("right"), self.record("wrong", reason="torn")]}
         rows = [line for line in update_sweep_page.lines_of(results, "update-sweep") if "torn" in line]
         self.assertEqual(len(rows), 1)
         self.assertIn("wrong in silence", rows[0])
