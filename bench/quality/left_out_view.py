@@ -35,7 +35,7 @@ part within {RADIUS:g} u of the middle of the underside.
 
 *mean* and *largest* are distances of Stanford's merged points from the mesh, in percent of the diagonal, *recall* is
 the share of them nearer than 0.5 % of it. The underside has two real holes, and no view shows their walls: the new
-surface there is a guess, and the genus depends on it. *deviation* is the largest distance of a new point from the
+surface there is a guess, and the genus may depend on it. *deviation* is the largest distance of a new point from the
 model, in percent of the diagonal."""
 
 

@@ -314,7 +314,7 @@ def our_line(entry: dict) -> list[str]:
 
 def sentences(entry: dict) -> list[str]:
     """The failures and doubts of an example, and a warning if its cloud is much denser than its model."""
-    name = entry["file"].capitalize()
+    name = entry["file"][0].upper() + entry["file"][1:]
     found = []
     for made, words in ((entry, name), (entry["local"], f"{name}, `rebuild: local`")):
         if made["failure"]:
