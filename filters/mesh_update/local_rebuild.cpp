@@ -32,6 +32,8 @@ constexpr u32 invalid_index = ~u32(0);
 /// Width of the collar and of the guard, in spacings. Near its end a sample has no reliable surface; the guard keeps
 /// that away from the collar. On smooth meshes one spacing is enough; at sharp edges, three refuse fewest changes.
 constexpr double width_in_spacings = 3;
+/// Without a seam, the collar is doubled this often.
+constexpr int most_widenings = 1;
 /// Distance of the far points from the centre of a region along each axis, in half diagonals of its box. 1.5 is too
 /// near: a third of the changes of a box are refused. 4 and 10 give equal results.
 constexpr double far_distance = 4;
@@ -93,7 +95,10 @@ struct Region {
 
 class RegionFinder {
 public:
-    RegionFinder(const Given& given, Context& context) : given_(given), context_(context) {}
+    RegionFinder(const Given& given, double widening, Context& context)
+        : given_(given),
+          widening_(widening),
+          context_(context) {}
 
     /// The region of a change, or of several together.
     Region find(std::vector<u32> removed, std::vector<u32> points, double spacing) const {
@@ -103,7 +108,7 @@ public:
         region.spacing = spacing;
         sort_unique(region.removed);
         sort_unique(region.points);
-        region.width = width_in_spacings * std::max(spacing, edge_beside(region.removed));
+        region.width = widening_ * width_in_spacings * std::max(spacing, edge_beside(region.removed));
         region.core = core_of(region);
         region.core_vertices = given_.vertices_of(region.core);
         region.guard = guard_of(region);
@@ -181,6 +186,7 @@ private:
     }
 
     const Given& given_;
+    double widening_;
     Context& context_;
 };
 
@@ -213,8 +219,9 @@ bool unite_near(std::vector<Region>& regions, const RegionFinder& finder) {
     return is_less;
 }
 
-std::vector<Region> regions_of(const Given& given, std::span<const LocalChange> changes, Context& context) {
-    const RegionFinder finder(given, context);
+std::vector<Region> regions_of(const Given& given, std::span<const LocalChange> changes, double widening,
+                               Context& context) {
+    const RegionFinder finder(given, widening, context);
     std::vector<Region> regions;
     for (const LocalChange& change : changes)
         if (!change.removed.empty()) regions.push_back(finder.find(change.removed, change.points, change.spacing));
@@ -565,17 +572,15 @@ void check_intersections(const Given& given, const LocalRebuild& result, Context
 
 }  // namespace
 
-LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
-                             std::span<const Vec3> points, std::span<const LocalChange> changes,
-                             std::span<const u32> discarded, const CoconeParams& params, Context& context) {
-    assert(opposite.size() == 3 * mesh.triangles.size());
-    assert(std::ranges::is_sorted(discarded));
-    const Given given{mesh, opposite, tree, points, discarded};
-    const std::vector<Region> regions = regions_of(given, changes, context);
+namespace {
+
+LocalRebuild rebuilt_with(const Given& given, std::span<const LocalChange> changes, double widening,
+                          const CoconeParams& params, Context& context) {
+    const std::vector<Region> regions = regions_of(given, changes, widening, context);
     LocalRebuild result;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        const NewSurface surface = new_surface(given, regions[i], params, context);
-        Exchange exchange(given, regions[i], surface);
+    for (const Region& region : regions) {
+        const NewSurface surface = new_surface(given, region, params, context);
+        Exchange exchange(given, region, surface);
         exchange.run(context);
         result.replaced.insert(result.replaced.end(), exchange.replaced.begin(), exchange.replaced.end());
         for (const u32 row : exchange.taken) result.triangles.push_back(surface.triangles[row]);
@@ -594,6 +599,22 @@ LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> oppo
     sort_unique(used);
     result.unused_points = given_points.size() - used.size();
     return result;
+}
+
+}  // namespace
+
+LocalRebuild rebuild_locally(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,
+                             std::span<const Vec3> points, std::span<const LocalChange> changes,
+                             std::span<const u32> discarded, const CoconeParams& params, Context& context) {
+    assert(opposite.size() == 3 * mesh.triangles.size());
+    assert(std::ranges::is_sorted(discarded));
+    const Given given{mesh, opposite, tree, points, discarded};
+    double widening = 1;
+    for (int i = 0; i < most_widenings; ++i, widening *= 2) try {
+            return rebuilt_with(given, changes, widening, params, context);
+        } catch (const Error&) {  // the surfaces may agree farther away
+        }
+    return rebuilt_with(given, changes, widening, params, context);
 }
 
 std::optional<LocalRebuild> exchanged(const TriangleMesh& mesh, std::span<const u32> opposite, const FacetTree& tree,

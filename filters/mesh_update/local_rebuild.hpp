@@ -15,8 +15,8 @@
 ///    facets at new points. Over an edge that is not common, the mark passes to the neighbour in the same surface; over
 ///    a common one, to the facet of the other surface on the same side of the edge. So the marked facets of both
 ///    surfaces end up with the same boundary, edge for edge: the seam. The marked facets of the mesh are exchanged for
-///    those of the new surface. Marks must stay within the collar. Parts of the new surface without a seam are not
-///    used.
+///    those of the new surface. Marks must stay within the collar; otherwise all steps are repeated with collar and
+///    guard twice as wide. Parts of the new surface without a seam are not used.
 ///
 /// Facets of the mesh that the new surface does not have are therefore kept unless they are connected to the change,
 /// and a planar quadrangle may have its other diagonal: the mesh need not be a Delaunay surface of its vertices.

@@ -45,11 +45,13 @@ constexpr double most_unused = 0.05;
 constexpr double longest_handle = 8;
 constexpr std::size_t most_handles = 16;
 /// Above this share of the new surface farther than a spacing from everything that was given, a result is doubtful.
-constexpr double most_far = 0.03;
+constexpr double most_far = 0.01;
 
 /// The local rebuild splits long edges of facets this near to a border, in lengths of the longest edge that stays: the
 /// collar and the guard are three such edges wide each.
 constexpr double resampling_reach = 9;
+/// A local rebuild may widen its collar by this factor.
+constexpr double widest_collar = 2;
 
 /// Clouds that are updated as one: usually a single cloud.
 struct CloudGroup {
@@ -183,7 +185,8 @@ private:
         std::vector<BoundingBox> boxes;
         for (const CloudGroup& group : groups_) {
             BoundingBox box = bounding_box(group.positions.span());
-            const Vec3 margin = Vec3::Constant(box.diagonal() + max_distance_ + resampling_reach * longest);
+            const Vec3 margin =
+                Vec3::Constant(box.diagonal() + max_distance_ + widest_collar * resampling_reach * longest);
             boxes.push_back({box.low - margin, box.high + margin});
         }
         const auto is_near = [&](const Triangle& t) {
@@ -689,6 +692,7 @@ private:
                 group == Groups::overlap || !is_replaced_[static_cast<std::size_t>(group)])
                 kept.push_back(facet);
         const double share = far_share(model, kept, surfaces, result_.mesh, changed.is_new, spacing, context_);
+        context_.metric("far-surface", share, Unit::ratio);
         if (share > most_far)
             context_.doubt(fmt::format("{:.2g} % of the new surface is farther than {:.4g} {}, the spacing of the {}, "
                                        "from the clouds and from what was kept",

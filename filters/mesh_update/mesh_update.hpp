@@ -108,7 +108,7 @@ struct MeshUpdateResult {
 /// Ties: of equally near facets, that with the lowest row; of equally near vertices, the lowest.
 /// Cost: whole: that of delaunay() and tight_cocone() on all points; local: one pass over the model, then the change.
 /// Metrics: see plugin.cpp. Doubts a result whose topology is not that of the kept groups joined with the clouds'
-///       surfaces, of which more than 3 % of the new area is farther than a spacing from both, or which leaves out
+///       surfaces, of which more than 1 % of the new area is farther than a spacing from both, or which leaves out
 ///       points: more than 5 % of those of the clouds.
 MeshUpdateResult mesh_update(const TriangleMesh& model, std::span<const std::shared_ptr<const PointCloud>> clouds,
                              const MeshUpdateParams& params, Context& context);

@@ -81,6 +81,11 @@ SCANMILL_FILTER() {
         .metric("change-cloud", Unit::count, "Number of the cloud of that point.", numbered)
         .metric("remeshed", Unit::count,
                 "New triangles without a point of a cloud: vertices of the model, joined anew.", smaller_is_better)
+        .metric(
+            "far-surface", Unit::ratio,
+            "Share of the new surface that is farther than a spacing of the cloud from the clouds and from what was "
+            "kept.",
+            smaller_is_better)
         .metric("loops", Unit::count, "Border loops of the clouds that were used.")
         .metric("border-offset", Unit::length,
                 "Median distance of border points from the model, the largest of the loops of each cloud.", numbered,
