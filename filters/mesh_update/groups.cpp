@@ -26,18 +26,21 @@ bool is_thin(const Vec3& start, const Vec3& end, const Vec3& apex) {
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-/// Sets the components of the model in which the groups lie.
+/// Sets the components of the model in which the groups lie. Groups of one component are connected by overlap facets.
 void find_components(const Model& model, Groups& groups) {
-    DisjointSets sets(groups.of_facet.size());
-    for (u32 h = 0; h < model.opposite.size(); ++h)
-        if (model.opposite[h] > h) sets.unite(h / 3, model.opposite[h] / 3);
-    std::map<u32, u32> lowest;
-    groups.component.assign(groups.count, 0);
-    std::vector<u32> facet_of(groups.count, 0);
-    for (u32 f = static_cast<u32>(groups.of_facet.size()); f-- > 0;)
-        if (groups.of_facet[f] != Groups::overlap) facet_of[static_cast<std::size_t>(groups.of_facet[f])] = f;
-    for (u32 g = 0; g < groups.count; ++g)
-        groups.component[g] = lowest.emplace(sets.find(facet_of[g]), g).first->second;
+    std::map<u32, u32> number;  // of overlap facets, after the groups
+    for (u32 facet = 0; facet < groups.of_facet.size(); ++facet)
+        if (groups.of_facet[facet] == Groups::overlap)
+            number.emplace(facet, static_cast<u32>(groups.count + number.size()));
+    const auto number_of = [&](u32 facet) {
+        const std::int32_t group = groups.of_facet[facet];
+        return group == Groups::overlap ? number.at(facet) : static_cast<u32>(group);
+    };
+    DisjointSets sets(groups.count + number.size());
+    for (const auto& [facet, own] : number)
+        for (u32 h = 3 * facet; h < 3 * facet + 3; ++h) sets.unite(own, number_of(model.opposite[h] / 3));
+    groups.component.resize(groups.count);
+    for (u32 g = 0; g < groups.count; ++g) groups.component[g] = sets.find(g);
 }
 
 }  // namespace
@@ -204,11 +207,21 @@ long euler(std::span<const u32> opposite, const IsIn& is_in) {
 
 }  // namespace
 
-long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced) {
-    return euler(model.opposite, [&](u32 facet) {
+long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced, std::size_t vertices) {
+    const auto goes = [&](u32 facet) {
         const std::int32_t group = groups.of_facet[facet];
-        return group == Groups::overlap || !replaced[static_cast<std::size_t>(group)];
-    });
+        return group != Groups::overlap && replaced[static_cast<std::size_t>(group)];
+    };
+    std::vector<u32> border;  // vertices, once for each border half-edge
+    for (u32 h = 0; h < model.opposite.size(); ++h)
+        if (goes(h / 3) && !goes(model.opposite[h] / 3)) border.push_back(model.start(h));
+    const long half_edges = static_cast<long>(border.size());
+    std::ranges::sort(border);
+    const auto repeats = std::ranges::unique(border);
+    border.erase(repeats.begin(), repeats.end());
+    const long whole = static_cast<long>(vertices) - static_cast<long>(model.mesh.triangles.size()) / 2;
+    // A border vertex is in fans of both parts, as many of each.
+    return whole - euler(model.opposite, goes) + half_edges - static_cast<long>(border.size());
 }
 
 CloudEuler euler_of(const CloudSurface& cloud) {

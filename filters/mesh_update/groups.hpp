@@ -67,9 +67,10 @@ struct Choice {
 /// replaced below 90°, whatever the gap.
 Choice chosen_groups(const CloudAngles& angles, double gap);
 
-/// V - E + F of the part of the model that stays: the kept groups with the overlap facets and the replaced fragments,
-/// so without the replaced groups. A vertex counts once per fan. Cost: linear.
-long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced);
+/// V - E + F of the part of the model that stays: all but the replaced groups. A vertex counts once per fan.
+/// `vertices`: the number of the model's vertices that are in triangles. Cost: a look at every facet, and that of the
+/// replaced groups.
+long euler_of_rest(const Model& model, const Groups& groups, const std::vector<bool>& replaced, std::size_t vertices);
 
 /// V - E + F of the components of a cloud's surface that have a loop in use, with their other loops filled.
 struct CloudEuler {

@@ -109,6 +109,7 @@ public:
         require_parameters(params_);
         require_inputs();
         Array<u32> opposites = closed_opposites(given_);
+        double of_model = watch_.lap();
         reconstruct_clouds();
         context_.progress(0.2);
         context_.metric("boundary-seconds", watch_.lap(), Unit::seconds);
@@ -120,6 +121,7 @@ public:
         find_far_clouds(tree);
         if (!result_.doubt.empty()) {
             segmentation_.of_facet.assign(given_.triangles.size(), Groups::overlap);
+            context_.metric("model-seconds", of_model + watch_.lap(), Unit::seconds);
             keep({given_, std::move(opposites), std::move(tree)});
             report();
             return std::move(result_);
@@ -132,7 +134,8 @@ public:
                           resampled.added > 0 ? facet_tree(resampled.mesh, longest) : std::move(tree));
         refuse_intersections(model);
         context_.progress(0.3);
-        context_.metric("model-seconds", watch_.lap(), Unit::seconds);
+        of_model += watch_.lap();
+        context_.metric("model-seconds", of_model, Unit::seconds);
         find_overlaps(model);
         context_.metric("overlap-seconds", watch_.lap(), Unit::seconds);
         choose_groups(model);
@@ -636,7 +639,8 @@ private:
     /// The result is the rest of the model joined with the surfaces of the clouds. The surface of a noisy cloud has
     /// pinholes, and handles beside them; it may then also be a sphere with its loops cut out.
     void find_expected_euler(const Model& model) {
-        expected_euler_ = sphere_euler_ = euler_of_rest(model, segmentation_, is_replaced_);
+        expected_euler_ = sphere_euler_ =
+            euler_of_rest(model, segmentation_, is_replaced_, result_.initial + result_.resampled);
         for (const CloudGroup& group : groups_) {
             const CloudEuler found = euler_of(group.surface);
             expected_euler_ += found.as_found;

@@ -9,6 +9,7 @@
 #include "filters/mesh_update/blocks.hpp"
 #include "mesh_update/replacement.hpp"
 #include "mesh_update/resample.hpp"
+#include "scanmill/base/random.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {
@@ -151,6 +152,47 @@ TEST_F(TopOfABlock, OverlapFacetsAreUnderTheBorder_AndDivideTheModelInTwo) {
     EXPECT_GT(angles.groups[0].mean, 140 * degree);
     EXPECT_LT(angles.groups[1].mean, 40 * degree);
     EXPECT_THAT(chosen_groups(angles, 0.3).replaced, ElementsAre(1));
+}
+
+TEST(EulerOfRest, IsThatOfTheFacetsThatStay) {
+    // The dual graph of a sphere, cut at random: V - E + F of the rest, a vertex once per fan, by counting.
+    const TriangleMesh mesh = geodesic_sphere(1, 6);
+    const Model model(mesh, closed_opposites(mesh), FacetTree(mesh, 1));
+    Context context;
+    Random random(3);
+    for (int round = 0; round < 20; ++round) {
+        Array<u8> is_overlap(mesh.triangles.size());
+        for (u8& flag : is_overlap) flag = random.uniform() < 0.4;
+        const Groups groups = segmentation(model, is_overlap, context);
+        std::vector<bool> replaced(groups.count);
+        for (std::size_t g = 0; g < groups.count; ++g) replaced[g] = random.uniform() < 0.5;
+        const auto stays = [&](u32 facet) {
+            const std::int32_t group = groups.of_facet[facet];
+            return group == Groups::overlap || !replaced[static_cast<std::size_t>(group)];
+        };
+        long facets = 0, half_edges = 0, border = 0, fans = 0;
+        for (u32 h = 0; h < model.opposite.size(); ++h) {
+            if (!stays(h / 3)) continue;
+            facets += h % 3 == 0;
+            ++half_edges;
+            border += !stays(model.opposite[h] / 3);
+        }
+        for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+            u32 at = 0;
+            while (model.start(at) != vertex) ++at;
+            long inside = 0, changes = 0;
+            bool before = stays(model.opposite[at] / 3);  // the facet before the first one, clockwise
+            model.for_each_around(at, [&](u32 h) {
+                const bool now = stays(h / 3);
+                inside += now;
+                changes += now && !before;
+                before = now;
+            });
+            fans += inside > 0 && changes == 0 ? 1 : changes;
+        }
+        EXPECT_EQ(euler_of_rest(model, groups, replaced, mesh.positions.size()),
+                  fans - (half_edges + border) / 2 + facets);
+    }
 }
 
 TEST_F(TopOfABlock, CandidatesAreASuperset) {
