@@ -190,7 +190,7 @@ private:
     };
     struct Crossing {
         double height;
-        int change;  ///< of the difference new - old, upwards along the line
+        int change;  ///< change of the difference new - old, upwards along the line
     };
     struct Point {
         double u, w;

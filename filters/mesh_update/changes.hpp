@@ -21,7 +21,7 @@ struct ChangedTriangles {
 inline constexpr u32 no_common_vertex = ~u32(0);
 
 struct Change {
-    double area = 0;  ///< of the new triangles
+    double area = 0;  ///< total area of the new triangles
     double volume_added = 0;  ///< inside the new solid and outside the old one
     double volume_removed = 0;  ///< inside the old solid and outside the new one
     std::vector<u32> old_triangles, new_triangles;  ///< positions in the lists of changed triangles, ascending

@@ -74,7 +74,7 @@ public:
     }
 
 private:
-    static constexpr double width = 2;  ///< of a crack, in spacings of the cloud
+    static constexpr double width = 2;  ///< largest width of a crack, in spacings of the cloud
 
     const TriangleMesh& mesh_;
     double distance_;

@@ -87,7 +87,7 @@ struct Given {
 struct Region {
     std::vector<u32> removed, points;
     double spacing = 0;
-    double width = 0;             ///< of the collar and of the guard
+    double width = 0;             ///< width of the collar and of the guard
     std::vector<u32> core;        ///< the removed facets and the collar
     std::vector<u32> guard;       ///< the guard
     std::vector<u32> core_vertices;

@@ -55,11 +55,11 @@ constexpr double widest_collar = 2;
 
 /// Clouds that are updated as one: usually a single cloud.
 struct CloudGroup {
-    std::vector<u32> numbers;  ///< of its clouds
-    Array<u32> rows;  ///< of its points, among the points of all clouds
+    std::vector<u32> numbers;  ///< numbers of its clouds, from 0
+    Array<u32> rows;  ///< rows of its points among the points of all clouds
     Buffer<Vec3> positions;
     CloudSurface surface;
-    std::vector<LoopOverlap> loops;  ///< of the loops of the surface that are used
+    std::vector<LoopOverlap> loops;  ///< overlaps of the used loops, in their order
     CloudAngles angles;
     double offset = 0;  ///< largest median distance of a loop's points from their overlap facets
 };
@@ -769,7 +769,7 @@ private:
     const MeshUpdateParams& params_;
     Context& context_;
     StopWatch watch_;
-    Array<Vec3> positions_;  ///< of all clouds, relative to the model's origin
+    Array<Vec3> positions_;  ///< points of all clouds, relative to the model's origin
     std::vector<CloudGroup> groups_;
     double max_distance_ = 0;
     long expected_euler_ = 0, sphere_euler_ = 0;

@@ -53,7 +53,7 @@ struct MeshUpdateParams : TightCoconeParams {
 
 /// A connected part of the mesh that the clouds changed.
 struct MeshChange {
-    double area = 0;  ///< of the triangles with a point of a cloud
+    double area = 0;  ///< total area of the triangles with a point of a cloud
     double volume_added = 0;  ///< inside the result and outside the model; see changes.hpp for the error
     double volume_removed = 0;  ///< inside the model and outside the result
     double deviation = 0;  ///< largest distance of a point of the clouds in it from the model
@@ -63,8 +63,8 @@ struct MeshChange {
 
 /// The angle condition at the border of a cloud.
 struct MeshUpdateAngle {
-    u32 cloud = 0;  ///< number of the cloud, from 1; of clouds that count as one, the lowest
-    u32 group = 0;  ///< of the model, from 1
+    u32 cloud = 0;  ///< number of the cloud, from 1; if clouds count as one, the lowest
+    u32 group = 0;  ///< number of the model's group, from 1
     double mean = 0;  ///< in radians
     bool is_replaced = false;  ///< whether the group is
 };
@@ -90,26 +90,30 @@ struct MeshUpdateResult {
     std::string doubt;  ///< why the model was kept; empty if updated
 };
 
-/// Pre:  the model is closed, a manifold, faces outwards and does not intersect itself; clouds have at least one point;
-///       one unit for all (origins may differ); parameters in their ranges. Throws Error otherwise,
-///       and with OnDoubt::fail for each of these doubts, with cloud, position and numbers:
+/// Pre:  the model is closed, a manifold and faces outwards; with Rebuild::whole it does not intersect itself. Clouds
+/// have
+///       at least one point. All have one unit; origins may differ. Parameters are in their ranges. Throws Error
+///       otherwise. With OnDoubt::fail, throws Error for each of these doubts, with cloud, position and numbers:
 ///        - hanging: more than a fifth of a loop is farther than max_distance from the model;
 ///        - registration: the median distance of a loop's points from their facets exceeds half a spacing of the cloud;
 ///        - no separation: a loop has one group on both sides;
 ///        - ambiguous: the angles do not decide, or clouds disagree.
-///       A hole in a cloud that hangs, or lies beside the model, is no loop: tight cocone closes it. One doubt stops
-///       the whole update.
-/// Post: every vertex of the model that is not discarded keeps its coordinates, bit for bit. With OnDoubt::keep and a
-///       doubt, positions and triangles are those of the given model. The result does not depend on the number of
-///       threads, nor on which way the clouds' or the model's triangles were found.
-///       Where the surface would have a handle of a few spacings that neither the model nor a cloud has, the points of
-///       the clouds on it are left out once, with a warning. Clouds whose loops come within two spacings of each other
-///       count as one.
-/// Ties: of equally near facets, that with the lowest row; of equally near vertices, the lowest.
-/// Cost: whole: that of delaunay() and tight_cocone() on all points; local: one pass over the model, then the change.
-/// Metrics: see plugin.cpp. Doubts a result whose topology is not that of the kept groups joined with the clouds'
-///       surfaces, of which more than 1 % of the new area is farther than a spacing from both, or which leaves out
-///       points: more than 5 % of those of the clouds.
+///       One doubt stops the whole update. Holes of a cloud that hang, lie beside the model or do not decide are not
+///       used as loops; the new surface closes them. Throws Error if nothing of a component of the model would be kept,
+///       and with Rebuild::local where rebuild_locally() does.
+/// Post: vertices of the model that are not discarded keep their coordinates, bit for bit. With OnDoubt::keep and a
+/// doubt,
+///       positions and triangles are those of the given model. The result depends on neither the number of threads nor
+///       the order of the clouds, apart from the order of their points. Clouds whose loops come within two spacings of
+///       each other count as one. Where the surface has a short handle that neither the model nor a cloud has, the
+///       points of the clouds on it are left out, with a warning.
+/// Ties: among equally near facets, the lowest row; among equally near vertices, the lowest.
+/// Cost: whole: that of delaunay() and tight_cocone() on all points; local: passes over the model without searches,
+/// then
+///       the change.
+/// Metrics: see plugin.cpp. Doubts a result in three cases: its topology is not that of the kept groups joined with the
+///       clouds' surfaces; more than 1 % of the new area is farther than a spacing from both; more than 5 % of the
+///       clouds' points are left out.
 MeshUpdateResult mesh_update(const TriangleMesh& model, std::span<const std::shared_ptr<const PointCloud>> clouds,
                              const MeshUpdateParams& params, Context& context);
 

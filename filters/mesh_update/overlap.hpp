@@ -71,7 +71,7 @@ public:
 private:
     const Model& model_;
     Array<u32> corners_;  ///< by vertex in a triangle, a half-edge that starts there
-    TriangleTree vertices_;  ///< of these vertices
+    TriangleTree vertices_;  ///< tree over the starts of `corners_`
 };
 
 }  // namespace scanmill::updating
