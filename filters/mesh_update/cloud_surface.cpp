@@ -107,9 +107,11 @@ void choose_loops(CloudSurface& surface, std::span<const u32> opposite) {
         const double own = longest[component[loops[i][0] / 3]];
         const bool is_used = loops[i].size() >= least_edges && own >= least_share * all &&
                              shapes[i].length >= least_share * own && !cracks.contains(loops[i]);
+        // The longest loop is the border, also of a cloud around most of the object.
+        const bool is_hole =
+            !is_outer[i] && shapes[i].length < own && (shapes[i].clear || shapes[i].length < hole_share * own);
         if (is_used)
-            surface.loops.push_back(
-                {loops[i], shapes[i].length, !is_outer[i] && (shapes[i].clear || shapes[i].length < hole_share * own)});
+            surface.loops.push_back({loops[i], shapes[i].length, is_hole});
         else
             ++surface.ignored_loops;
     }

@@ -135,6 +135,16 @@ TEST_F(TopOfABlock, TheCloudHasOneLoopAlongItsBorder) {
     EXPECT_NEAR(cloud.loops[0].length, 4 * 28, 0.2 * 4 * 28);
 }
 
+TEST(CloudSurface, TheOnlyLoopOfACloudAroundMostOfASphereIsNoHole) {
+    Array<Vec3> most;
+    for (const Vec3& p : geodesic_sphere(10, 30).positions)
+        if (p.z() > -7) most.push_back(p);
+    Context context;
+    const CloudSurface cloud = cloud_surface(most, {}, context);
+    ASSERT_EQ(cloud.loops.size(), 1);
+    EXPECT_FALSE(cloud.loops[0].is_hole);
+}
+
 TEST_F(TopOfABlock, OverlapFacetsAreUnderTheBorder_AndDivideTheModelInTwo) {
     const LoopOverlap overlap = overlap_of(model, cloud, cloud.loops[0], 3, context);
     EXPECT_EQ(overlap.hanging, 0);
