@@ -320,8 +320,9 @@ TEST(MeshUpdate, ACloudWithAHoleOverTheChange_IsClosed) {
 }
 
 TEST(UpdateDoubts, APadWithoutItsTop_IsClosedFarFromTheCloud) {
+    const auto pad = step_cloud(middle, 20, 6, 4, 1);
     Array<Vec3> open;
-    for (const Vec3& p : step_cloud(middle, 20, 6, 4, 1)->positions)
+    for (const Vec3& p : pad->positions)
         if (p.z() < 26) open.push_back(p);
     PointCloud cloud;
     cloud.positions = std::move(open);
