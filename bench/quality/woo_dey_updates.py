@@ -211,7 +211,7 @@ def prepared(options: Namespace, example: Example, folder: pathlib.Path) -> Prep
 def judged(report: dict, case: Prepared) -> dict:
     cell = report["cells"][0]
     if cell["outcome"] not in ("ok", "doubtful"):
-        return {"failure": str(cell.get("error", cell["outcome"]))}
+        return {"failure": str(cell.get("error", cell["outcome"])).partition("\n")[0]}
     step = scanmill.steps(report, cell)["mesh-update"]
     metrics = step["metrics"]
     counts = {name: int(metrics[name]) for name in COUNTS}
