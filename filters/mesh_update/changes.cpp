@@ -239,7 +239,7 @@ private:
     /// Calls action(column, crossing) for each line of the row that meets the triangle. Pre: the row meets it.
     template <class Action>
     void for_each_crossing(const Corners& triangle, double v, Action&& action) const {
-        Point ascending{}, descending{};  // of the edges that the row meets
+        Point ascending{}, descending{};  // where the row meets ascending and descending edges
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 &from = triangle[i], &to = triangle[(i + 1) % 3];
             if (from.y() <= v && !(to.y() <= v)) ascending = point_at(from, to, v);

@@ -21,9 +21,8 @@
 /// Facets of the mesh that the new surface does not have are therefore kept unless they are connected to the change,
 /// and a planar quadrangle may have its other diagonal: the mesh need not be a Delaunay surface of its vertices.
 ///
-/// Source: Woo, Dey 2005 for the problem; the method is our own. Measured on random dents, bumps and repeats with radii
-/// of 2 to 10 edges that stay clear of the rest of the mesh: of 375 on 22 meshes made by tight-cocone 1.6 % were
-/// refused, all at sharp edges and thin walls; of 252 on 15 other meshes 3.2 %.
+/// Source: Woo, Dey 2005 for the problem; the method is our own. bench/quality/update-sweep-local.md shows how often it
+/// refuses.
 
 #include <optional>
 #include <span>

@@ -358,7 +358,7 @@ private:
         return static_cast<double>(overlap.hanging) > largest_hanging * static_cast<double>(overlap.edges.size());
     }
 
-    /// Whether the loop is used; a loop that is no hole and does not lie on the model is a doubt.
+    /// Whether the loop is used. A border that does not lie on the model is a doubt; a hole is then ignored.
     bool lies_on_model(CloudGroup& group, const CloudLoop& loop, LoopOverlap& overlap) {
         const std::size_t points = overlap.edges.size();
         if (hangs(overlap)) {

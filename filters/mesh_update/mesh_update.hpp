@@ -37,8 +37,8 @@ struct MeshUpdateParams : TightCoconeParams {
         keep  ///< return the model, with a warning
     };
     Rebuild rebuild = Rebuild::whole;
-    /// Boundary points of a cloud farther from the model have no overlap facet; above 0. The spacing is the median edge
-    /// of the model once its long edges are split.
+    /// Boundary points of a cloud farther from the model have no overlap facet; above 0. The spacing is the model's
+    /// median edge, or `density` spacings of the densest cloud if that is less.
     Length max_distance = Length::spacings(3);
     Overlap overlap = Overlap::projected;
     /// The mean angles of two groups must differ by more than this; 0 to 90 degrees.

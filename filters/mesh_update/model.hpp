@@ -37,8 +37,8 @@ private:
     TriangleTree tree_;
 };
 
-/// half_edges::opposites(mesh). Throws Error for a mesh that is open, not a manifold or inside out, with the position
-/// of the first defect. Cost: linear.
+/// half_edges::opposites(mesh). Throws Error for a mesh that is open or not a manifold, with the first defect and its
+/// position, and for a mesh that is inside out. Cost: linear.
 Array<u32> closed_opposites(const TriangleMesh& mesh);
 
 /// A closed mesh with its half-edges and a tree over its facets.

@@ -186,7 +186,7 @@ CandidateFacets::CandidateFacets(const Model& model, unsigned threads)
 
 void CandidateFacets::add(const CloudSurface& cloud, const CloudLoop& loop, double max_distance,
                           LoopOverlap& overlap) const {
-    std::vector<u32> before;  // of the edge's start, once its end is looked at
+    std::vector<u32> before;  // facets at the edge's start, while its end is searched
     const std::size_t count = loop.half_edges.size();
     for (std::size_t k = 0; k <= count; ++k) {
         const u32 h = loop.half_edges[k % count];

@@ -33,7 +33,7 @@ SCANMILL_FILTER() {
         .param(
             "max-distance", &P::max_distance,
             "Border points of a cloud farther from the model lie on no facet of it. The spacing is the median edge of "
-            "the model once its long edges are split.",
+            "the model, or `density` spacings of the densest cloud if that is less.",
             above(0), takes_spacings)
         .choice("overlap", &P::overlap,
                 {{"projected", P::Overlap::projected, "The facets under the border of a cloud."},

@@ -47,8 +47,8 @@ struct Held {
     Array<Vec3> queries;
     Array<Triangle> query_triangles;
     Value file;
-    TriangleMesh model;  ///< closed, of the cloud
-    std::vector<std::shared_ptr<const PointCloud>> scans;  ///< of a part of the model
+    TriangleMesh model;  ///< closed mesh of the cloud
+    std::vector<std::shared_ptr<const PointCloud>> scans;  ///< scans that show a part of the model
 
     TriangleMesh mesh() const {
         TriangleMesh mesh;
