@@ -126,6 +126,12 @@ TEST_P(SteppedBlock, HasTheVolumeOfTheUnionOrTheDifference) {
     // Triangles between the cloud and the model are as wide as the model's edges, at most 4.
     EXPECT_GT(change.area, 28 * 28 + 80 * (added + removed) - 4 * 28);
     EXPECT_LT(change.area, 36 * 36 + 80 * (added + removed));
+    // The block's other faces keep their triangles, although other ways to join their vertices are as good.
+    const std::span<const u8> is_new = result.mesh.face_columns.find("updated")->values<u8>();
+    for (std::size_t i = 0; i < is_new.size(); ++i)
+        for (const u32 vertex : result.mesh.triangles[i]) {
+            EXPECT_TRUE(is_new[i] == 0 || result.mesh.positions[vertex].z() > 11.9);
+        }
     // Outside of the cloud, the top is whole: the group of the block's corners is kept.
     const std::set<Position> found = positions(result.mesh);
     for (const Vec3& corner : block().positions) EXPECT_TRUE(found.contains(key(corner)));

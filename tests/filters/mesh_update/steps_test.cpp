@@ -234,6 +234,25 @@ TEST_F(TopOfABlock, ASparseCloudDividesADenseModel) {
     EXPECT_EQ(segmentation(dense_model, is_overlap, context).count, 2);
 }
 
+TEST_F(TopOfABlock, TrimDiscardsVerticesBesideAPoint) {
+    const LoopOverlap overlap = overlap_of(model, cloud, cloud.loops[0], 3, context);
+    const PointTree points(cloud.mesh.positions.span());
+    const Array<u8> none(mesh.positions.size(), u8(0));
+    Array<u8> untrimmed = none, trimmed = none;
+    discard_under(model, overlap.facets, cloud, points, 0, none, untrimmed, context);
+    discard_under(model, overlap.facets, cloud, points, 2, none, trimmed, context);
+    NeighbourBuffer buffer;
+    std::size_t more = 0;
+    for (u32 vertex = 0; vertex < none.size(); ++vertex) {
+        EXPECT_LE(untrimmed[vertex], trimmed[vertex]);
+        if (untrimmed[vertex] == trimmed[vertex]) continue;
+        ++more;
+        // On a square grid, the six nearest neighbours are at most √2 away, also at its border at most 2.
+        EXPECT_LT(points.nearest_to(mesh.positions[vertex], 1, buffer)[0].squared, 2 * 2 * 2 * 2);
+    }
+    EXPECT_GT(more, 0);
+}
+
 TEST_F(TopOfABlock, VerticesUnderTheCloudAreDiscarded_ThoseOutsideAreNot) {
     const LoopOverlap overlap = overlap_of(model, cloud, cloud.loops[0], 3, context);
     Array<u8> discarded(mesh.positions.size(), u8(0));
