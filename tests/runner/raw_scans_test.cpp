@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "scanmill/base/random.hpp"
+#include "scanmill/data/topology.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/folders.hpp"
 #include "support/known_models.hpp"
@@ -219,6 +221,44 @@ TEST_F(RawScans, TheBunnysTenViews_BecomeOneClosedMesh) {
     EXPECT_EQ(found.at("genus"), 0);
     EXPECT_EQ(found.at("self-intersections"), 0);
     EXPECT_GE(found.at("f-score").get<double>(), 0.97);
+}
+
+/// Root of the mean squared distance of the vertices from the torus of these radii around the z axis.
+double rms_from_torus(const TriangleMesh& mesh, double ring, double tube) {
+    double sum = 0;
+    for (const Vec3& offset : mesh.positions) {
+        const Vec3 p = mesh.frame.origin + offset;
+        const double distance = std::hypot(std::hypot(p.x(), p.y()) - ring, p.z()) - tube;
+        sum += distance * distance;
+    }
+    return std::sqrt(sum / static_cast<double>(mesh.positions.size()));
+}
+
+TEST_F(RawScans, NoisyViewsOfATorusWithOutliers_BecomeASmoothSurface_NearerToItThanTheirNoise) {
+    const double ring = 1, tube = 0.4, noise = 0.004;
+    folder_.write("scan.yaml", fmt::format("scanmill: 1\nsteps:\n  - virtual-scan: {{shape: torus, size: [{} u, {} u], "
+                                           "views: 20, resolution: 0.06 u, noise: {} u, outliers: 0.5 %}}\noutputs: "
+                                           "{{views.ply: virtual-scan}}\n",
+                                           ring, tube, noise));
+    const ProgramResult made = scanmill_program({"run", "scan.yaml", "-o", "."}, options());
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const json cell = cells_of(shipped("bernardini-1997-raw.yaml"), {"views.ply"}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "ok") << cell;
+    std::size_t triangles = 0;
+    for (const char* name : {"", "-light", "-smooth"}) {
+        SCOPED_TRACE(name);
+        const auto mesh = read_mesh(folder_ / fmt::format("out/bernardini-1997-raw{}.ply", name));
+        const MeshTopology found = topology(*mesh);
+        EXPECT_TRUE(found.closed) << defects_text(found);
+        EXPECT_EQ(found.genus, 1);
+        EXPECT_LT(rms_from_torus(*mesh, ring, tube), noise);
+        if (name == std::string("-light")) {
+            EXPECT_LT(mesh->triangles.size(), triangles / 2);
+        }
+        triangles = mesh->triangles.size();
+    }
+    for (const char* file : {"-patches.json", "-smooth.stl"})
+        EXPECT_TRUE(fs::exists(folder_ / (std::string("out/bernardini-1997-raw") + file))) << file;
 }
 
 struct Scanned {

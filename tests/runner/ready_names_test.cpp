@@ -17,6 +17,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
 class ReadyNames : public testing::Test {
 protected:
@@ -41,6 +42,16 @@ TEST_F(ReadyNames, EveryReadyName_IsFoundFromAnEmptyFolder) {
         EXPECT_THAT(result.out, HasSubstr("variant")) << name;
     }
     EXPECT_GT(found, 10u);
+}
+
+TEST_F(ReadyNames, SmoothSurfaceOfRawViews_BeginsWithTheStepsOfRawScans) {
+    const auto plan = [&](const std::string& name) {
+        const std::string out = scanmill({"check", name, "--plan"}).out;
+        return out.substr(std::min(out.find("   1. "), out.size()));
+    };
+    const std::string mesh = plan("raw-scans"), steps = mesh.substr(0, mesh.find("  {scan}"));
+    EXPECT_THAT(steps, AllOf(HasSubstr("   8. fill-holes"), HasSubstr("expect closed: true")));
+    EXPECT_THAT(plan("bernardini-1997-raw"), StartsWith(steps));
 }
 
 TEST_F(ReadyNames, Nightly_NeedsNoFile) {
