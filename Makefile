@@ -63,7 +63,7 @@ reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculp
 # Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features scanmill-cluster-mesh
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
-# Filters of raw-scans.yaml.
+# Filters of raw-scans.yaml and bernardini-1997-raw.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
 # Further filters of surfaces.py, woo_dey_table_1.py and woo_dey_updates.py.
 surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson scanmill-mesh-update
@@ -83,6 +83,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/sharp_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill

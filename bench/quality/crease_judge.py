@@ -18,13 +18,18 @@ def segments(features):
 
 def samples(lines, step):
     """Points in the middle of equal parts, of at most `step`, of every segment, and the length that each stands for."""
+    return samples_of_segments(lines, step)[:2]
+
+
+def samples_of_segments(lines, step):
+    """The same, and the row of each point's segment."""
     starts, ends = lines
     lengths = numpy.linalg.norm(ends - starts, axis=1)
     parts = numpy.maximum(1, numpy.ceil(lengths / step)).astype(int)
     of = numpy.repeat(numpy.arange(len(parts)), parts)
     number = numpy.arange(len(of)) - numpy.repeat(numpy.cumsum(parts) - parts, parts)
     shares = ((number + 0.5) / parts[of])[:, None]
-    return starts[of] * (1 - shares) + ends[of] * shares, (lengths / parts)[of]
+    return starts[of] * (1 - shares) + ends[of] * shares, (lengths / parts)[of], of
 
 
 def share_within(lines, others, distance):
