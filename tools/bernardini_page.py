@@ -3,8 +3,10 @@
 """bernardini_page.py PROGRAM SCAN FOLDER: writes docs/bernardini-1997.md and its pictures: the stages of
 workflows/bernardini-1997.yaml on one scan, as in Figure 1 of Bernardini et al. 1997, with the numbers of the run.
 Values of the workflow are written into FOLDER."""
+import base64
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 
@@ -57,12 +59,14 @@ def triangles_of(cell, name):
 
 def write_hull(patches, file):
     """Every second tetrahedron over a triangle of the light mesh, and the triangles, as an OFF file."""
-    places, triangles = patches["points"], []
-    for tet in patches["tets"]:
-        if tet["side"] == 1 and tet["kind"] == "face":
-            base, i, j, apex = tet["vertices"]
+    places, tets, sides, kinds, rows = (
+        list(struct.iter_unpack(row, base64.b64decode(patches[name])))
+        for name, row in (("points", "<3d"), ("tets", "<4I"), ("side", "<B"), ("kind", "<B"), ("patch", "<I")))
+    triangles = []
+    for (base, i, j, apex), (side,), (kind,), (row,) in zip(tets, sides, kinds, rows):
+        if side == 1 and kind == 0:  # outside, over a triangle
             triangles.append((base, i, j))
-            if tet["patch"] % 2 == 0:
+            if row % 2 == 0:
                 triangles += [(i, apex, base), (base, apex, j), (j, apex, i)]
     lines = ["OFF", f"{len(places)} {len(triangles)} 0"]
     lines += [f"{x} {y} {z}" for x, y, z in places]

@@ -4,13 +4,19 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
 
+#include "scanmill/base/random.hpp"
+#include "scanmill/kinds/base64.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 PatchComplex two_tets() {
@@ -52,27 +58,146 @@ PatchComplex patches_of(const Json& json) {
     return *std::static_pointer_cast<PatchComplex>(kind_of<PatchComplex>().info().from_json(json, {}));
 }
 
+template <class Row>
+Array<Row> rows_of(const Json& json) {
+    Base64<Row> value;
+    JsonForm<Base64<Row>>::read(json, value);
+    return value.rows;
+}
+/// Changes the rows of an array in a document.
+template <class Row>
+void change(Json& json, const std::function<void(Array<Row>&)>& action) {
+    Array<Row> rows = rows_of<Row>(json);
+    action(rows);
+    json = JsonForm<Base64<Row>>::write({rows});
+}
+
+template <class Row>
+bool equal_bits(const Buffer<Row>& one, const Buffer<Row>& other) {
+    return std::ranges::equal(std::as_bytes(one.span()), std::as_bytes(other.span()));
+}
 void expect_equal(const PatchComplex& a, const PatchComplex& b) {
     EXPECT_EQ(a.frame, b.frame);
-    EXPECT_TRUE(std::ranges::equal(a.positions, b.positions));
-    EXPECT_TRUE(std::ranges::equal(a.tets, b.tets));
-    EXPECT_TRUE(std::ranges::equal(a.weights, b.weights));
-    EXPECT_TRUE(std::ranges::equal(a.kinds, b.kinds));
-    EXPECT_TRUE(std::ranges::equal(a.sides, b.sides));
-    EXPECT_TRUE(std::ranges::equal(a.triangles, b.triangles));
-    EXPECT_TRUE(std::ranges::equal(a.edges, b.edges));
-    EXPECT_TRUE(std::ranges::equal(a.combine, b.combine));
-    EXPECT_TRUE(std::ranges::equal(a.partners, b.partners));
+    EXPECT_TRUE(equal_bits(a.positions, b.positions));
+    EXPECT_TRUE(equal_bits(a.tets, b.tets));
+    EXPECT_TRUE(equal_bits(a.weights, b.weights));
+    EXPECT_TRUE(equal_bits(a.kinds, b.kinds));
+    EXPECT_TRUE(equal_bits(a.sides, b.sides));
+    EXPECT_TRUE(equal_bits(a.triangles, b.triangles));
+    EXPECT_TRUE(equal_bits(a.edges, b.edges));
+    EXPECT_TRUE(equal_bits(a.combine, b.combine));
+    EXPECT_TRUE(equal_bits(a.partners, b.partners));
+}
+void expect_read_back(const PatchComplex& patches) {
+    expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
 }
 
 TEST(Patches, AsJsonText_AreReadBackBitForBit) {
-    expect_equal(patches_of(parse_document(json_of(two_tets()).dump())), two_tets());
+    expect_read_back(two_tets());
     for (const Combine combine : {Combine::max, Combine::min}) {
         PatchComplex patches = two_functions(combine);
-        expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
+        expect_read_back(patches);
         patches.kinds = {PatchKind::sharp, PatchKind::sharp};
-        expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
+        expect_read_back(patches);
     }
+}
+
+TEST(Patches, WeightsAtACommonFace_AreWrittenOnce) {
+    const PatchComplex patches = two_tets();
+    const Json json = json_of(patches);
+    Array<double> wanted(patches.weights[0].begin(), patches.weights[0].end());
+    // c_ijkl with l > 0, which belong to point 4
+    for (const std::size_t i : {3, 6, 8, 9, 12, 14, 15, 17, 18, 19}) wanted.push_back(patches.weights[1][i]);
+    EXPECT_EQ(rows_of<double>(json["weights"]), wanted);
+    EXPECT_EQ(json["own-weights"], "");
+    EXPECT_EQ(json["partners"], "");
+    EXPECT_THAT(rows_of<u32>(json["edge"]), ElementsAre(4294967295u, 7));
+}
+
+TEST(Patches, WithOneOtherBitAtACommonFace_HaveAllWeights) {
+    for (const std::size_t changed : {0, 7}) {  // -7 / 3, and 0, which becomes -0
+        PatchComplex patches = two_tets();
+        PatchWeights weights = patches.weights[1];
+        weights[changed] = changed == 7 ? -0.0 : std::nextafter(weights[changed], 0);
+        patches.weights = {patches.weights[0], weights};
+        const Json json = json_of(patches);
+        EXPECT_THAT(rows_of<u32>(json["own-weights"]), ElementsAre(1));
+        EXPECT_EQ(rows_of<double>(json["weights"]).size(), 40u);
+        expect_read_back(patches);
+    }
+}
+
+TEST(Patches, AtSharpEdges_HaveAllWeights_WhichOthersDoNotShare) {
+    PatchComplex patches = two_functions();
+    patches.kinds = {PatchKind::sharp, PatchKind::sharp};
+    const Json json = json_of(patches);
+    EXPECT_THAT(rows_of<u32>(json["own-weights"]), ElementsAre(0, 1));
+    EXPECT_EQ(rows_of<double>(json["weights"]).size(), 40u);
+    EXPECT_THAT(rows_of<u32>(json["partners"]), ElementsAre(0, 1, 1));
+    EXPECT_THAT(rows_of<u32>(json_of(two_functions(Combine::min))["partners"]), ElementsAre(0, 1, 2));
+    // A third tetrahedron at the same points has another function, and needs no row of its own for it.
+    PatchWeights other = patches.weights[0];
+    other[0] = 5;
+    patches.tets = {patches.tets[0], patches.tets[1], {0, 1, 2, 3}};
+    patches.weights = {patches.weights[0], patches.weights[1], other};
+    patches.kinds = {PatchKind::sharp, PatchKind::sharp, PatchKind::edge};
+    patches.sides = {1, 1, 0};
+    patches.triangles = {0, 1, 2};
+    patches.edges = {3, 3, 4};
+    patches.combine = {Combine::max, Combine::max, Combine::none};
+    patches.partners = {1, 0, PatchComplex::no_partner};
+    EXPECT_THAT(rows_of<u32>(json_of(patches)["own-weights"]), ElementsAre(0, 1));
+    expect_read_back(patches);
+}
+
+/// Tetrahedra of a few points, in any order of their corners, with weights that few pairs of them share.
+PatchComplex random_patches(std::uint64_t seed) {
+    constexpr u32 points = 9;
+    Random random(seed);
+    PatchComplex patches;
+    Array<Vec3> positions(points, Vec3(1. / 3, -0.0, 5e-324));
+    positions[0] = Vec3(-1, -1, -1);
+    patches.positions = positions;
+    Array<std::array<u32, 4>> tets(random.index(60));
+    Array<PatchWeights> weights(tets.size());
+    Array<PatchKind> kinds(tets.size());
+    for (std::size_t row = 0; row < tets.size(); ++row) {
+        std::array<u32, points> order{0, 1, 2, 3, 4, 5, 6, 7, 8};
+        for (u32 i = 0; i < 4; ++i) std::swap(order[i], order[i + random.index(points - i)]);
+        std::copy_n(order.begin(), 4, tets[row].begin());
+        kinds[row] = static_cast<PatchKind>(random.index(20) < 17 ? random.index(2) : 2 + random.index(2));
+        std::size_t number = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = i; j < 4; ++j)
+                for (std::size_t k = j; k < 4; ++k) {
+                    const auto [a, b, c] = std::array{tets[row][i], tets[row][j], tets[row][k]};
+                    double& weight = weights[row][number++];
+                    weight = a * b * c == 0 ? 0 : std::sin(1. + a + b + c) / (1 + a * b * c);
+                    if (random.index(200) == 0) weight = -weight;
+                }
+    }
+    patches.tets = tets;
+    patches.weights = weights;
+    patches.kinds = kinds;
+    patches.sides = Array<u8>(tets.size(), 1);
+    patches.triangles = Array<u32>(tets.size(), 3);
+    patches.edges = Array<u32>(tets.size(), PatchComplex::no_edge);
+    patches.combine = Array<Combine>(tets.size(), Combine::none);
+    patches.partners = Array<u32>(tets.size(), PatchComplex::no_partner);
+    return patches;
+}
+
+TEST(Patches, OfAnyTetrahedra_AreReadBackBitForBit) {
+    std::size_t shared = 0, own = 0;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        const PatchComplex patches = random_patches(seed);
+        expect_read_back(patches);
+        const Json json = json_of(patches);
+        shared += 20 * patches.tets.size() - rows_of<double>(json["weights"]).size();
+        own += rows_of<u32>(json["own-weights"]).size();
+    }
+    EXPECT_GT(shared, 1000u);
+    EXPECT_GT(own, 100u);
 }
 
 TEST(Patches, InAnotherUnit_HaveScaledWeights) {
@@ -122,47 +247,118 @@ TEST(PatchesRefuse, WhatIsNotUsable) {
     patches = two_functions();
     patches.combine = {Combine::max};
     EXPECT_THAT(refusal(patches), HasSubstr("one row for each of the 2"));
+    patches = two_functions();
+    patches.combine = {Combine::max, Combine::none};
+    EXPECT_THAT(refusal(patches), HasSubstr("0 and its partner 1 differ"));
+    patches.combine = {Combine::none, Combine::none};
+    EXPECT_THAT(refusal(patches), HasSubstr("0 has a partner without 'combine'"));
+    patches = two_tets();
+    patches.combine = {Combine::none, Combine::max};
+    EXPECT_THAT(refusal(patches), HasSubstr("1 has no partner to combine"));
+    patches = two_functions();
+    patches.partners = {2, 0};
+    EXPECT_THAT(refusal(patches), HasSubstr("has partner 2; there are 2"));
 }
 
-TEST(PatchesRefuse, BrokenJson) {
-    const auto refusal = [](auto&& change) {
-        Json json = json_of(two_tets());
-        change(json);
-        return error_of([&] { patches_of(json); }).sentence();
+/// The refusal of a document that is changed; it must have a hint.
+template <class Change>
+std::string refusal(const PatchComplex& patches, const Change& action) {
+    Json json = json_of(patches);
+    action(json);
+    const Error error = error_of([&] { patches_of(json); });
+    EXPECT_THAT(error.hint(), HasSubstr("the step that made it again")) << error.what();
+    return error.sentence();
+}
+
+TEST(PatchesRefuse, DocumentsOfEarlierVersions) {
+    EXPECT_THAT(refusal(two_tets(),
+                        [](Json& j) {
+                            j["tets"] = {1, 2, 3};
+                        }),
+                HasSubstr("written by an earlier version, with 'tets' as a list of 3"));
+}
+
+TEST(PatchesRefuse, TextsThatAreNotBase64) {
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["kind"] = "AA!="; }),
+                HasSubstr("'kind' is not base64: character 2 is '!'"));
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["weights"].get_ref<std::string&>().pop_back(); }),
+                HasSubstr("'weights' is not base64: its 319 characters"));
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["points"] = 7; }), HasSubstr("'points' is not a base64 text"));
+}
+
+TEST(PatchesRefuse, ArraysOfAnotherLength) {
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["tets"] = "AAAA"; }),
+                HasSubstr("'tets' holds 3 bytes, which are not whole rows of 16"));
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["points"] = "AAAA"; }), HasSubstr("not whole rows of 24"));
+    EXPECT_THAT(refusal(two_functions(), [](Json& j) { j["partners"] = "AAAA"; }), HasSubstr("not whole rows of 12"));
+    for (const std::string name : {"kind", "side"})
+        EXPECT_THAT(refusal(two_tets(), [&](Json& j) { j[name] = "AAAA"; }),
+                    HasSubstr("'" + name + "' has 3 values; expected 2"));
+    for (const std::string name : {"patch", "edge"})
+        EXPECT_THAT(refusal(two_tets(), [&](Json& j) { j[name] = "AAAAAA=="; }),
+                    HasSubstr("'" + name + "' has 1 value; expected 2"));
+    for (const std::string name : {"points", "kind", "side", "patch", "edge", "partners", "own-weights", "weights"})
+        EXPECT_THAT(refusal(two_tets(), [&](Json& j) { j.erase(name); }), HasSubstr(name));
+}
+
+TEST(PatchesRefuse, TooFewOrTooManyWeights) {
+    for (const std::size_t number : {0, 29, 31})
+        EXPECT_THAT(refusal(two_tets(),
+                            [&](Json& j) {
+                                change<double>(j["weights"], [&](Array<double>& values) { values.resize(number, 1); });
+                            }),
+                    HasSubstr("'weights' has " + std::to_string(number) + " values; its 2 tetrahedra need 30"));
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["own-weights"] = "AQAAAA=="; }),
+                HasSubstr("'weights' has 30 values; its 2 tetrahedra need 40"));
+}
+
+TEST(PatchesRefuse, NumbersThatAreNotFinite) {
+    for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+        const std::string text = std::isnan(wrong) ? "nan" : "-inf";
+        EXPECT_THAT(
+            refusal(two_tets(),
+                    [&](Json& j) { change<double>(j["weights"], [&](Array<double>& values) { values[21] = wrong; }); }),
+            HasSubstr("'weights[21]' contains " + text));
+        EXPECT_THAT(
+            refusal(two_tets(),
+                    [&](Json& j) { change<double>(j["points"], [&](Array<double>& values) { values[10] = wrong; }); }),
+            HasSubstr("'points[3]' contains " + text));
+    }
+}
+
+TEST(PatchesRefuse, IndicesOutOfRange) {
+    const auto with_corner = [](std::size_t i, u32 vertex) {
+        return refusal(two_tets(),
+                       [&](Json& j) { change<u32>(j["tets"], [&](Array<u32>& corners) { corners[i] = vertex; }); });
     };
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"][2] = 9; }),
-                HasSubstr("tetrahedron 0 names point 9; there are 5"));
-    EXPECT_THAT(refusal([](Json& j) {
-                    j["tets"][0]["vertices"] = {1, 2};
-                }),
-                HasSubstr("'tets[0].vertices' is not a list of 4"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["vertices"][3] = 0u; }),
-                HasSubstr("tetrahedron 1 names point 0 twice"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["weights"] = {1}; }),
-                HasSubstr("'tets[1].weights' is not a list of 20"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["kind"] = "corner"; }), HasSubstr("'tets[1].kind' is 'corner'"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "sum"; }), HasSubstr("expected none, max and min"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "max"; }), HasSubstr("1 has no partner to combine"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["partner"] = 0u; }), HasSubstr("1 has a partner without 'combine'"));
-    EXPECT_THAT(refusal([](Json& j) {
-                    j["tets"][1].update({{"partner", 2u}, {"combine", "max"}});
-                }),
-                HasSubstr("has partner 2; there are 2"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["side"] = 2; }), HasSubstr("'tets[1].side' is 2"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["patch"] = -1; }),
-                HasSubstr("'tets[1].patch' is not a whole number"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][0] = 1; }), HasSubstr("'tets[0]' is not an object"));
-    const auto refusal_of_two = [](auto&& change) {
-        Json json = json_of(two_functions());
-        change(json["tets"]);
-        return error_of([&] { patches_of(json); }).sentence();
+    EXPECT_THAT(with_corner(2, 9), HasSubstr("tetrahedron 0 names point 9; there are 5"));
+    EXPECT_THAT(with_corner(7, 0), HasSubstr("tetrahedron 1 names point 0 twice"));
+    const auto with_own = [](Array<u32> rows) {
+        return refusal(two_tets(),
+                       [&](Json& j) { j["own-weights"] = JsonForm<Base64<u32>>::write({std::move(rows)}); });
     };
-    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[0]["partner"] = 0u; }), HasSubstr("has partner 0, which has"));
-    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["combine"] = "min"; }),
-                HasSubstr("0 and its partner 1 differ"));
-    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["side"] = 0u; }), HasSubstr("0 and its partner 1 differ"));
-    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["vertices"][0] = 4u; }),
-                HasSubstr("0 and its partner 1 differ"));
+    EXPECT_THAT(with_own({1, 2}), HasSubstr("'own-weights[1]' names tetrahedron 2; there are 2"));
+    EXPECT_THAT(with_own({1, 0}), HasSubstr("'own-weights[1]' is 0 after 1"));
+    EXPECT_THAT(with_own({1, 1}), HasSubstr("'own-weights[1]' is 1 after 1"));
+}
+
+TEST(PatchesRefuse, UnknownKindsAndSides) {
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["kind"] = "AAQ="; }),
+                HasSubstr("'kind[1]' is 4; expected 0 (face)"));
+    EXPECT_THAT(refusal(two_tets(), [](Json& j) { j["side"] = "AgE="; }), HasSubstr("'side[0]' is 2; expected 0 or 1"));
+}
+
+TEST(PatchesRefuse, PairsThatDoNotMatch) {
+    const auto with_pairs = [](Array<u32> pairs, const PatchComplex& patches = two_functions()) {
+        return refusal(patches, [&](Json& j) { j["partners"] = JsonForm<Base64<u32>>::write({std::move(pairs)}); });
+    };
+    EXPECT_THAT(with_pairs({0, 2, 1}), HasSubstr("'partners[0]' names tetrahedron 2; there are 2"));
+    EXPECT_THAT(with_pairs({0, 0, 1}), HasSubstr("'partners[0]' names tetrahedron 0 a second time"));
+    EXPECT_THAT(with_pairs({0, 1, 1, 1, 0, 1}), HasSubstr("'partners[1]' names tetrahedron 1 a second time"));
+    EXPECT_THAT(with_pairs({0, 1, 0}), HasSubstr("'partners[0]' has the rule 0; expected 1"));
+    EXPECT_THAT(with_pairs({0, 1, 3}), HasSubstr("'partners[0]' has the rule 3"));
+    EXPECT_THAT(with_pairs({0, 1, 1}, two_tets()), HasSubstr("0 and its partner 1 differ"));
+    EXPECT_THAT(refusal(two_functions(), [](Json& j) { j["side"] = "AQA="; }), HasSubstr("0 and its partner 1 differ"));
 }
 
 }  // namespace

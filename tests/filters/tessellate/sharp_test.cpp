@@ -2,9 +2,7 @@
 // Creases: closed, with vertices exactly on them, and normals of both sides.
 #include "filters/a_patch/sharp_cases.hpp"
 #include "filters/tessellate/cases.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
-#include "support/temporary_folder.hpp"
 
 namespace scanmill {
 namespace {
@@ -183,18 +181,6 @@ TEST(TessellateSharp, AnyMixtureOfSegments_FitsTogether) {
             expect_closed(tessellated(patches, params), round.mesh);
         }
     }
-}
-
-TEST(TessellateSharp, PatchesReadFromJson_GiveTheSameBits) {
-    const PatchComplex patches = patched(plate_with_hole(12)).result.patches;
-    const TemporaryFolder folder;
-    write_file(folder / "a.json", std::make_shared<const PatchComplex>(patches));
-    const Value value = read_file(folder / "a.json").value;
-    const TriangleMesh one = tessellated(patches, 4), other = tessellated(*value.find<PatchComplex>(), 4);
-    EXPECT_TRUE(std::ranges::equal(one.positions, other.positions));
-    EXPECT_TRUE(std::ranges::equal(one.triangles, other.triangles));
-    EXPECT_TRUE(std::ranges::equal(one.sharp_edges, other.sharp_edges));
-    EXPECT_TRUE(one.face_columns == other.face_columns);
 }
 
 /// The patches without the rows beside edges that are `removed` for their row.

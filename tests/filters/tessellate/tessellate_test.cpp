@@ -2,9 +2,7 @@
 #include "tessellate/tessellate.hpp"
 
 #include "filters/tessellate/cases.hpp"
-#include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
-#include "support/temporary_folder.hpp"
 
 namespace scanmill {
 namespace {
@@ -331,18 +329,6 @@ TEST(Tessellate, AnyNumberOfThreads_GivesTheSameBits) {
         EXPECT_TRUE(std::ranges::equal(one.triangles, four.triangles));
         EXPECT_TRUE(one.vertex_columns == four.vertex_columns && one.face_columns == four.face_columns);
     }
-}
-
-TEST(Tessellate, PatchesReadFromJson_GiveTheSameBits) {
-    const PatchComplex patches = patched(exact_torus(12, 6), Curvature::distance, Split::where_needed).result.patches;
-    const TemporaryFolder folder;
-    write_file(folder / "a.json", std::make_shared<const PatchComplex>(patches));
-    const Value value = read_file(folder / "a.json").value;
-    ASSERT_TRUE(value.find<PatchComplex>());
-    const TriangleMesh one = tessellated(patches, 4), other = tessellated(*value.find<PatchComplex>(), 4);
-    EXPECT_TRUE(std::ranges::equal(one.positions, other.positions));
-    EXPECT_TRUE(std::ranges::equal(one.triangles, other.triangles));
-    EXPECT_TRUE(one.vertex_columns == other.vertex_columns && one.face_columns == other.face_columns);
 }
 
 TEST(TessellateRefuses, PatchesThatAreNotComplete) {
