@@ -20,11 +20,11 @@
 ///
 /// The weight c_ijkl of a tetrahedron belongs to a control point: the multiset of three of its vertices that has its
 /// first vertex i times, its second j times, and so on. Tetrahedra with equal functions on a common face have equal
-/// weights there. `weights` therefore has the tetrahedra in their order, the 20 weights of each in descending
-/// lexicographic order of (i, j, k, l), 3000, 2100, …, 0003, but only those whose control point is new: an omitted
-/// weight is that of the same control point in an earlier tetrahedron. A row in `own-weights` has all its 20 weights in
-/// `weights`, and they are not those of other rows: its function differs from an earlier one at a common control point,
-/// as at sharp edges. Numbers are read back bit for bit. `unit` and `frame` are null if unknown.
+/// weights there, and `weights` has these once. It has the tetrahedra in their order, the weights of each in descending
+/// lexicographic order of (i, j, k, l), 3000, 2100, …, 0003, without those whose control point occurs in an earlier
+/// tetrahedron. Their values are those of the earlier one. The rows in `own-weights` are exceptions: they have all 20
+/// weights in `weights`, and others do not take values from them. Their functions differ from others at a common
+/// control point, as at sharp edges. Numbers are read back bit for bit. `unit` and `frame` are null if unknown.
 #include "scanmill/data/patches.hpp"
 
 #include <algorithm>
@@ -127,11 +127,12 @@ constexpr auto fields(const PatchesDocument*) {
               "the larger one, 2 the smaller one."),
         field("own-weights", &T::own_weights,
               "A u32 per tetrahedron that shares no weights: its row, in rising order."),
-        field("weights", &T::weights,
-              "The float64 weights c_ijkl of the tetrahedra in their order, each with (i, j, k, l) in descending "
-              "lexicographic order: 3000, 2100, …, 0003. A weight is left out if an earlier tetrahedron has the same "
-              "three vertices (the first one i times, the second one j times, …) and the same weight there. Rows of "
-              "'own-weights' have all 20, which are not those of other rows.")};
+        field(
+            "weights", &T::weights,
+            "The float64 weights c_ijkl of the tetrahedra in their order, each with (i, j, k, l) in descending "
+            "lexicographic order: 3000, 2100, …, 0003. A weight belongs to three vertices: the first one i times, the "
+            "second one j times, … If an earlier tetrahedron has the same three vertices, the weight is left out, and "
+            "equal to the earlier one. Rows of 'own-weights' have all 20, and others do not take values from them.")};
 }
 
 // Weights that tetrahedra share.
