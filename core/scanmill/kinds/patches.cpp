@@ -5,26 +5,13 @@
 ///      "points": "AAAAAAAA8D8…", "tets": "DAAAAAAAAAA…", "kind": "AAAA…", "side": "AQEB…", "patch": "AAAAAA…",
 ///      "edge": "/////w…", "partners": "", "own-weights": "", "weights": "AAAAAAAAAAA…"}
 ///
-/// Every array is base64 of its rows' little-endian bytes (base64.hpp):
-///
-///     points       three float64 per point: world coordinates
-///     tets         four u32 per tetrahedron: rows of `points`
-///     kind         a byte per tetrahedron: 0 face, 1 edge, 2 sharp, 3 continuation
-///     side         a byte per tetrahedron: 1 outside the mesh, 0 inside
-///     patch        a u32 per tetrahedron: the row of the mesh's triangle
-///     edge         a u32 per tetrahedron: the number of the mesh's edge; 4294967295 over a triangle
-///     partners     three u32 per pair of tetrahedra with the same points: their two rows, and the function that holds:
-///                  1 the larger one, 2 the smaller one
-///     own-weights  a u32 per tetrahedron that shares no weights: its row; rows rise
-///     weights      float64 numbers, as follows
+/// Every array is base64 of its rows' little-endian bytes (base64.hpp); fields() describes each.
 ///
 /// The weight c_ijkl of a tetrahedron belongs to a control point: the multiset of three of its vertices that has its
 /// first vertex i times, its second j times, and so on. Tetrahedra with equal functions on a common face have equal
-/// weights there, and `weights` has these once. It has the tetrahedra in their order, the weights of each in descending
-/// lexicographic order of (i, j, k, l), 3000, 2100, …, 0003, without those whose control point occurs in an earlier
-/// tetrahedron. Their values are those of the earlier one. The rows in `own-weights` are exceptions: they have all 20
-/// weights in `weights`, and others do not take values from them. Their functions differ from others at a common
-/// control point, as at sharp edges. Numbers are read back bit for bit. `unit` and `frame` are null if unknown.
+/// weights there, and `weights` has these once. The rows in `own-weights` are exceptions: their functions differ from
+/// others at a common control point, as at sharp edges. Numbers are read back bit for bit. `unit` and `frame` are null
+/// if unknown.
 #include "scanmill/data/patches.hpp"
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "scanmill/base/random.hpp"
 #include "scanmill/kinds/base64.hpp"
 #include "scanmill/kinds/document.hpp"
+#include "support/same_bits.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -72,24 +73,8 @@ void change(Json& json, const std::function<void(Array<Row>&)>& action) {
     json = JsonForm<Base64<Row>>::write({rows});
 }
 
-template <class Row>
-bool equal_bits(const Buffer<Row>& one, const Buffer<Row>& other) {
-    return std::ranges::equal(std::as_bytes(one.span()), std::as_bytes(other.span()));
-}
-void expect_equal(const PatchComplex& a, const PatchComplex& b) {
-    EXPECT_EQ(a.frame, b.frame);
-    EXPECT_TRUE(equal_bits(a.positions, b.positions));
-    EXPECT_TRUE(equal_bits(a.tets, b.tets));
-    EXPECT_TRUE(equal_bits(a.weights, b.weights));
-    EXPECT_TRUE(equal_bits(a.kinds, b.kinds));
-    EXPECT_TRUE(equal_bits(a.sides, b.sides));
-    EXPECT_TRUE(equal_bits(a.triangles, b.triangles));
-    EXPECT_TRUE(equal_bits(a.edges, b.edges));
-    EXPECT_TRUE(equal_bits(a.combine, b.combine));
-    EXPECT_TRUE(equal_bits(a.partners, b.partners));
-}
 void expect_read_back(const PatchComplex& patches) {
-    expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
+    expect_same_bits(patches_of(parse_document(json_of(patches).dump())), patches);
 }
 
 TEST(Patches, AsJsonText_AreReadBackBitForBit) {

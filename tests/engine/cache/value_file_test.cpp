@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "engine/cache/value_samples.hpp"
+#include "support/same_bits.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -18,11 +19,6 @@ namespace {
 template <class T>
 const T& as(const Value& value) {
     return *value.get<T>();
-}
-
-template <class T>
-bool same_bits(const Buffer<T>& a, const Buffer<T>& b) {
-    return std::ranges::equal(std::as_bytes(a.span()), std::as_bytes(b.span()));
 }
 
 void expect_same(const ColumnTable& a, const ColumnTable& b) {

@@ -7,6 +7,7 @@
 #include "filters/tessellate/cases.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
+#include "support/same_bits.hpp"
 
 namespace scanmill {
 namespace {
@@ -17,27 +18,14 @@ std::string json_text(const PatchComplex& patches) {
     return write_bytes("a.json", std::make_shared<const PatchComplex>(patches));
 }
 
-template <class Row>
-bool equal_bits(const Buffer<Row>& one, const Buffer<Row>& other) {
-    return std::ranges::equal(std::as_bytes(one.span()), std::as_bytes(other.span()));
-}
-
 void expect_read_back(const PatchComplex& patches) {
     const Value value = read_bytes(json_text(patches), "a.json").value;
     ASSERT_TRUE(value.find<PatchComplex>());
     const PatchComplex& read = *value.find<PatchComplex>();
-    EXPECT_TRUE(equal_bits(patches.positions, read.positions));
-    EXPECT_TRUE(equal_bits(patches.tets, read.tets));
-    EXPECT_TRUE(equal_bits(patches.weights, read.weights));
-    EXPECT_TRUE(equal_bits(patches.kinds, read.kinds));
-    EXPECT_TRUE(equal_bits(patches.sides, read.sides));
-    EXPECT_TRUE(equal_bits(patches.triangles, read.triangles));
-    EXPECT_TRUE(equal_bits(patches.edges, read.edges));
-    EXPECT_TRUE(equal_bits(patches.combine, read.combine));
-    EXPECT_TRUE(equal_bits(patches.partners, read.partners));
+    expect_same_bits(patches, read);
     const TriangleMesh one = tessellated(patches, 4), other = tessellated(read, 4);
-    EXPECT_TRUE(equal_bits(one.positions, other.positions));
-    EXPECT_TRUE(equal_bits(one.triangles, other.triangles));
+    EXPECT_TRUE(same_bits(one.positions, other.positions));
+    EXPECT_TRUE(same_bits(one.triangles, other.triangles));
     EXPECT_TRUE(std::ranges::equal(one.sharp_edges, other.sharp_edges));
     EXPECT_TRUE(one.vertex_columns == other.vertex_columns && one.face_columns == other.face_columns);
 }
