@@ -22,16 +22,16 @@ namespace {
 constexpr std::size_t steps_per_cell = 5, metrics_per_step = 12, properties_per_output = 6;
 
 RunStart start() {
-    return {"nightly",
-            "nightly.yaml",
-            {"scanmill", "batch", "nightly.yaml", "-o", "out", "--no-cache"},
-            0,
-            1,
-            2,
-            "0.1.0",
-            "a processor, 2 cores, 16 GiB, Linux x86_64",
-            "Eigen 3.4.0, oneTBB 2021.8, glibc 2.36, GCC 12.2.0",
-            R"({"rules": {"hausdorff": "+1 %"}, "repeats": 1})"};
+    RunStart start;
+    start.workflow = "nightly";
+    start.file = "nightly.yaml";
+    start.arguments = {"scanmill", "batch", "nightly.yaml", "-o", "out", "--no-cache"};
+    start.jobs = 2;
+    start.version = "0.1.0";
+    start.machine = "a processor, 2 cores, 16 GiB, Linux x86_64";
+    start.libraries = "Eigen 3.4.0, oneTBB 2021.8, glibc 2.36, GCC 12.2.0";
+    start.gate = {{"hausdorff", "+1 %"}};
+    return start;
 }
 
 double noise(std::size_t a, std::size_t b) { return static_cast<double>((a * 2654435761u + b * 40503u) % 1000) / 1e3; }
@@ -41,15 +41,12 @@ void add_night(RunRecords& records, std::size_t cells) {
     std::vector<StepRecord> steps;
     std::vector<CellRecord> ended;
     for (std::size_t cell = 0; cell < cells; ++cell) {
-        CellRecord record{"reconstruction",
-                          fmt::format("scans/part_{:04}.ply", cell / 2),
-                          fmt::format("alpha={}", cell % 2),
-                          "ok",
-                          {},
-                          1,
-                          {},
-                          {},
-                          {}};
+        CellRecord record;
+        record.workflow = "reconstruction";
+        record.scan = fmt::format("scans/part_{:04}.ply", cell / 2);
+        record.variant = fmt::format("alpha={}", cell % 2);
+        record.outcome = Outcome::ok;
+        record.seconds = 1;
         for (std::size_t i = 0; i < steps_per_cell; ++i) {
             StepRecord step;
             step.node = cell * steps_per_cell + i;
@@ -64,7 +61,7 @@ void add_night(RunRecords& records, std::size_t cells) {
             step.outcome = Outcome::ok;
             step.effort.seconds = step.effort.cpu_seconds = noise(cell, i);
             step.effort.peak_memory = 100'000'000;
-            step.threads = step.attempts = 1;
+            step.attempts = 1;
             step.authored = {{"bin-size", "1 %diag"}, {"sharp-angle", "40 deg"}, {"smoothing", "0.5"}};
             step.resolved = {{"bin-size", "0.0123 u"}, {"sharp-angle", "40 deg"}, {"smoothing", "0.5"}};
             for (std::size_t metric = 0; metric < metrics_per_step; ++metric)
@@ -72,10 +69,13 @@ void add_night(RunRecords& records, std::size_t cells) {
             record.nodes.push_back(step.node);
             steps.push_back(std::move(step));
         }
-        record.truth = "truth/part.stl";
         record.costs = {{noise(cell, 1), noise(cell, 2), 100'000'000}};
-        OutputRecord output{
-            fmt::format("/nightly/out/part_{:04}.ply", cell), "mesh", "ok", {}, std::string(64, 'a'), 123'456};
+        OutputRecord output;
+        output.file = fmt::format("/nightly/out/part_{:04}.ply", cell);
+        output.kind = "mesh";
+        output.outcome = Outcome::ok;
+        output.sha256 = std::string(64, 'a');
+        output.bytes = 123'456;
         for (std::size_t property = 0; property < properties_per_output; ++property)
             output.properties.set(fmt::format("property-{}", property), noise(cell, property), Unit::count);
         record.outputs = {std::move(output)};
