@@ -10,25 +10,22 @@ namespace scanmill::decimating {
 
 namespace {
 
-/// A sector has a normal only if the cosine between the mean and each of its facet normals is at least this.
-constexpr double least_cosine = 0.1;
-
 /// Sectors of the original surface around one vertex at a time.
 class Sectors {
 public:
-    Sectors(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite,
-            std::span<const Vec3> normals)
+    Sectors(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite, const Creases& creases)
         : surface_(surface),
           features_(surface.original.features()),
           original_(original),
           opposite_(opposite),
-          normals_(normals) {}
+          creases_(creases) {}
 
     /// Finds the sectors at the vertex. The first one begins at the vertex's first feature edge, if it has any.
     void find(u32 vertex) {
         sums_.clear();
-        facets_.clear();
         ends_.clear();
+        const Array<Vec3>& normals =
+            features_.vertex_class(vertex) == VertexClass::smooth ? creases_.own_normals : creases_.normals;
         u32 half_edge = features_.first(vertex);
         // An open fan begins at its boundary edge. In a closed fan, the search moves on to a feature edge.
         if (opposite_[half_edge] != half_edges::boundary) {
@@ -50,17 +47,13 @@ public:
             const Vec3& centre = original_.positions[vertex];
             const u32 last = half_edges::start(original_, half_edges::before(half_edge));
             const double angle = angle_between(original_.positions[next] - centre, original_.positions[last] - centre);
-            const Vec3& normal = normals_[half_edge / 3];
-            sums_.back() += angle * normal;
-            facets_.emplace_back(sums_.size() - 1, normal);
+            sums_.back() += angle * normals[half_edge / 3];
             half_edge = opposite_[half_edges::before(half_edge)];
         } while (half_edge != half_edges::boundary && half_edge != begin);
-        for (Vec3& sum : sums_) sum.normalize();
-        std::vector<bool> has_normal(sums_.size(), !features_.is_singular(vertex));
-        for (const auto& [sector, normal] : facets_)
-            if (!(normal.dot(sums_[sector]) >= least_cosine)) has_normal[sector] = false;
-        for (std::size_t i = 0; i < sums_.size(); ++i)
-            if (!has_normal[i]) sums_[i].setZero();
+        for (Vec3& sum : sums_) {
+            sum.normalize();
+            if (features_.is_singular(vertex)) sum.setZero();
+        }
     }
 
     /// Calls action(half-edge of the new mesh, normal) for every corner at the vertex. Pre: find() for this vertex.
@@ -108,9 +101,8 @@ private:
     const FeatureNetwork& features_;
     const TriangleMesh& original_;
     std::span<const u32> opposite_;
-    std::span<const Vec3> normals_;
+    const Creases& creases_;
     std::vector<Vec3> sums_;  ///< by sector
-    std::vector<std::pair<std::size_t, Vec3>> facets_;  ///< sector and normal
     /// For each feature edge that begins a sector, the remaining vertex to which its line leads.
     std::vector<u32> ends_;
     std::vector<Corner> corners_;
@@ -119,13 +111,13 @@ private:
 }  // namespace
 
 Array<CornerNormals> corner_normals(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite,
-                                    std::span<const Vec3> normals) {
+                                    const Creases& creases) {
     const EditableMesh& mesh = surface.mesh();
     Array<u32> numbers(mesh.rows());
     u32 count = 0;
     for (u32 row = 0; row < mesh.rows(); ++row) numbers[row] = mesh.is_empty(row) ? EditableMesh::none : count++;
     Array<CornerNormals> result(count);
-    Sectors sectors(surface, original, opposite, normals);
+    Sectors sectors(surface, original, opposite, creases);
     for (u32 vertex = 0; vertex < mesh.vertices(); ++vertex) {
         if (!mesh.is_used(vertex)) continue;
         sectors.find(vertex);

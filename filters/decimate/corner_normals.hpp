@@ -3,6 +3,7 @@
 /// The normals of the original surface at the corners of the new triangles.
 
 #include "decimate/surface.hpp"
+#include "scanmill/geometry/mesh/creases.hpp"
 
 namespace scanmill::decimating {
 
@@ -12,13 +13,14 @@ using CornerNormals = std::array<double, 9>;
 /// For each triangle of surface.mesh().compact_triangles(), the unit normals of the sectors at its three corners.
 ///
 /// A sector of a vertex is the group of its triangles between two consecutive feature edges. The normal of a sector is
-/// the mean of the normals of its original triangles, weighted by their angles at the vertex. The remaining vertices
-/// keep their feature edges in order, so the sectors of new and original triangles correspond. The normal is zero at
-/// singular vertices. It is also zero in a sector where the cosine between a triangle's normal and the mean is below
-/// 0.1.
+/// the mean of the normals of its original triangles, weighted by their angles at the vertex. At vertices of creases,
+/// unreliable triangles have the normals by which the creases were found: triangles that bridge a crease belong to one
+/// of its sides, so the mean is the normal of this side. The remaining vertices keep their feature edges in order, so
+/// the sectors of new and original triangles correspond. The normal is zero only at singular vertices, and where the
+/// mean vanishes.
 ///
-/// `normals`: facet_normals() of the original mesh. Cost: linear.
+/// `creases`: of the original mesh. Cost: linear.
 Array<CornerNormals> corner_normals(const Surface& surface, const TriangleMesh& original, std::span<const u32> opposite,
-                                    std::span<const Vec3> normals);
+                                    const Creases& creases);
 
 }  // namespace scanmill::decimating

@@ -14,7 +14,7 @@
 #include "scanmill/filter/inputs.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
-#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/creases.hpp"
 
 namespace scanmill {
 
@@ -54,6 +54,7 @@ double length_of(const char* name, const Length& length) {
 
 /// `share`: allowed share of the largest errors.
 Limits limits_for(const DecimateParams& params, double share, double rounding) {
+    if (params.noise) (void)length_of("noise", *params.noise);
     require_angle("sharp-angle", params.sharp_angle, 20, 75);
     require_angle("corner-angle", params.corner_angle, 0, 180);
     require_angle("normal-deviation", params.normal_deviation, 0, 89);
@@ -176,7 +177,7 @@ Column length_column(std::string name, Array<T> values) {
 
 /// The result's mesh, with all columns.
 TriangleMesh result_mesh(const TriangleMesh& mesh, const Surface& surface, std::span<const u32> opposite,
-                         std::span<const Vec3> normals) {
+                         const Creases& creases) {
     const Kept kept = kept_vertices(surface.mesh());
     TriangleMesh result;
     result.frame = mesh.frame;
@@ -193,7 +194,7 @@ TriangleMesh result_mesh(const TriangleMesh& mesh, const Surface& surface, std::
     for (const u32 vertex : kept.vertices)
         classes.push_back(static_cast<u8>(surface.original.features().vertex_class(vertex)));
     result.vertex_columns.add(Column("class", 1, Buffer<u8>(std::move(classes))));
-    const Array<CornerNormals> corners = corner_normals(surface, mesh, opposite, normals);
+    const Array<CornerNormals> corners = corner_normals(surface, mesh, opposite, creases);
     Array<double> components(9 * corners.size()), outside, inside;
     for (std::size_t i = 0; i < corners.size(); ++i)
         std::ranges::copy(corners[i], components.begin() + static_cast<std::ptrdiff_t>(9 * i));
@@ -236,7 +237,7 @@ void report(const DecimateResult& result, Context& context) {
 struct Input {
     const TriangleMesh& mesh;
     const Array<u32>& opposite;
-    const FacetNormals& normals;
+    const Creases& creases;
     const OriginalSurface& original;
     std::span<const Vec3> data;
     std::span<const u32> data_triangles;  ///< by data point; NearestTriangle::none if it is left out
@@ -252,7 +253,7 @@ DecimateResult attempt(const Input& input, const Limits& limits, const DecimateP
     DecimateResult result;
     result.removed = counts.removed;
     result.flips = counts.flips;
-    result.mesh = result_mesh(input.mesh, surface, input.opposite, input.normals.unit);
+    result.mesh = result_mesh(input.mesh, surface, input.opposite, input.creases);
     const std::span<const u8> classes = result.mesh.vertex_columns.find("class")->values<u8>();
     result.creases = count_lines(result.mesh.sharp_edges.span(), classes);
     result.corners = static_cast<std::size_t>(std::ranges::count(classes, static_cast<u8>(VertexClass::corner)));
@@ -280,10 +281,12 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
             "max-error is {:.6g} u and the mesh's diagonal is {:.6g} u: only the topology and the shapes of triangles "
             "limit the result",
             max_error, box.diagonal()));
-    const FeatureScale scale{params.sharp_angle.in_radians(), params.corner_angle.in_radians(),
-                             feature_reach * max_error};
-    const FacetNormals normals = facet_normals(mesh, opposite, context.threads());
-    const FeatureNetwork features(mesh, opposite, normals.unit, scale, context.threads());
+    CreaseParams crease_params{
+        .sharp_angle = params.sharp_angle.in_radians(), .noise = {}, .least_size = feature_reach * max_error};
+    if (params.noise) crease_params.noise = params.noise->value();
+    const Creases creases = find_creases(mesh, opposite, crease_params, context);
+    const FeatureScale scale{params.corner_angle.in_radians(), std::max(creases.reach, feature_reach * max_error)};
+    const FeatureNetwork features(mesh, opposite, creases.sharp, scale);
     if (features.ignored_declared() > 0)
         context.warn(
             fmt::format("{} of the {} sharp edges of the mesh {} treated as smooth: their lines have a free end and "
@@ -302,7 +305,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     }
     context.progress(Decimator::progress_begin);
 
-    const Input input{mesh, opposite, normals, original, data, nearest.triangles};
+    const Input input{mesh, opposite, creases, original, data, nearest.triangles};
     const double bound = std::max(max_error + 2 * rounding, negligible * box.diagonal());
     double share = steering_share;
     DecimateResult result;

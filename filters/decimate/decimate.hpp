@@ -32,6 +32,9 @@ struct DecimateParams {
     Angle sharp_angle = Angle::degrees(40);
     /// A vertex where a feature line turns by more than this angle is a corner. 0 to 180 degrees.
     Angle corner_angle = Angle::degrees(35);
+    /// Standard deviation of the vertices' distances from the surface; 0 or more. If absent, it is estimated, see
+    /// CreaseParams.
+    std::optional<Length> noise;
     /// Largest angle between the normal of a new triangle and the mean normal of those it replaces. 0 to 89 degrees.
     Angle normal_deviation = Angle::degrees(60);
     /// Least angle of a new triangle. If a replaced triangle has a smaller angle, that smaller angle is the limit.
@@ -81,8 +84,8 @@ struct DecimateResult {
 ///       proves this; if it cannot, an Error is thrown. In mode direct, data points are within max_error too, except
 ///       those that were farther from the input. Every further removal would violate a limit.
 ///       A line of sharp or boundary edges becomes a line between some of its vertices, and the old line is within
-///       max_error of the new one. Corners stay. Roughness does not count as a feature: see feature_network.hpp. The
-///       new triangles intersect only triangles that the replaced ones intersected.
+///       max_error of the new one. Corners stay. Roughness does not count as a feature: see creases.hpp. The new
+///       triangles intersect only triangles that the replaced ones intersected.
 /// Ties: among equal estimates, the vertex with the lower number is removed first. Among equally good triangulations,
 /// the first is taken.
 /// Bytes do not depend on the number of threads.

@@ -3,18 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <numbers>
-#include <queue>
-#include <tuple>
+#include <utility>
 
-#include "scanmill/base/disjoint_sets.hpp"
-#include "scanmill/base/parallel.hpp"
 #include "scanmill/base/statistics.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
-#include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
-#include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::decimating {
 
@@ -24,22 +18,19 @@ constexpr u32 none = ~u32(0);
 
 }  // namespace
 
-FeatureNetwork::FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
-                               const FeatureScale& scale, unsigned threads)
+FeatureNetwork::FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool> sharp,
+                               const FeatureScale& scale)
     : mesh_(mesh),
       opposite_(opposite),
       first_(mesh.positions.size(), half_edges::boundary),
+      features_(std::move(sharp)),
       classes_(mesh.positions.size(), VertexClass::smooth) {
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
         u32& first = first_[half_edges::start(mesh, half_edge)];
         if (first == half_edges::boundary || opposite[half_edge] == half_edges::boundary) first = half_edge;
-    }
-    features_ = sharp_half_edges(mesh, opposite, normals, scale.sharp_angle + angle_tie, threads);
-    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge)
         if (opposite[half_edge] == half_edges::boundary) features_[half_edge] = true;
+    }
     count_features();
-    do prune_branches(scale.reach);
-    while (merge_small_faces(scale.reach * scale.reach));
     classify(scale);
     find_singular();
     if (mesh.sharp_edges.empty()) return;
@@ -68,112 +59,6 @@ void FeatureNetwork::count_features() {
         ++counts_[half_edges::start(mesh_, half_edge)];
         if (opposite_[half_edge] == half_edges::boundary) ++counts_[half_edges::end(mesh_, half_edge)];
     }
-}
-
-void FeatureNetwork::remove_feature(u32 half_edge) {
-    features_[half_edge] = features_[opposite_[half_edge]] = false;
-    --counts_[half_edges::start(mesh_, half_edge)];
-    --counts_[half_edges::end(mesh_, half_edge)];
-}
-
-void FeatureNetwork::prune_branches(double reach) {
-    // Removes the shortest branch first, so the longer of two branches at a fork continues the line.
-    struct Branch {
-        double length;
-        u32 end;
-        auto operator<=>(const Branch&) const = default;
-    };
-    std::vector<u32> path;
-    const auto follow = [&](u32 end) {
-        path.clear();
-        double length = 0;
-        u32 vertex = end, last = none;
-        do {
-            u32 next = none, edge = none;
-            for_each_line(vertex, [&](u32 half_edge, u32 other) {
-                if (other != last) next = other, edge = half_edge;
-            });
-            if (next == none) break;
-            path.push_back(edge);
-            length += (position(next) - position(vertex)).norm();
-            last = std::exchange(vertex, next);
-        } while (counts_[vertex] == 2 && length < reach);
-        return length;
-    };
-    std::priority_queue<Branch, std::vector<Branch>, std::greater<>> branches;
-    for (u32 vertex = 0; vertex < first_.size(); ++vertex)
-        if (counts_[vertex] == 1) branches.push({follow(vertex), vertex});
-    while (!branches.empty()) {
-        const Branch branch = branches.top();
-        branches.pop();
-        if (counts_[branch.end] != 1) continue;
-        const double length = follow(branch.end);
-        if (!(length < reach)) continue;
-        if (length > branch.length) {  // another branch at its fork was removed
-            branches.push({length, branch.end});
-            continue;
-        }
-        for (const u32 half_edge : path) remove_feature(half_edge);
-        for (const u32 end : {half_edges::start(mesh_, path.back()), half_edges::end(mesh_, path.back())})
-            if (counts_[end] == 1) branches.push({follow(end), end});
-    }
-}
-
-bool FeatureNetwork::merge_small_faces(double least_area) {
-    // A face is a set of triangles connected across edges that are not features. A small face joins the neighbouring
-    // face with the longest common border.
-    const u32 triangles = static_cast<u32>(mesh_.triangles.size());
-    DisjointSets faces(triangles);
-    std::vector<u32> sharp;
-    for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge) {
-        const u32 other = opposite_[half_edge];
-        if (other == half_edges::boundary || other < half_edge) continue;
-        if (features_[half_edge])
-            sharp.push_back(half_edge);
-        else
-            faces.unite(half_edge / 3, other / 3);
-    }
-    if (sharp.empty()) return false;
-    std::vector<double> areas(triangles, 0);
-    for (u32 t = 0; t < triangles; ++t)
-        areas[faces.find(t)] += area_vector(mesh_.positions, mesh_.triangles[t]).norm() / 2;
-    struct Border {
-        double area;
-        u32 face, half_edge;
-        auto operator<=>(const Border&) const = default;
-    };
-    std::vector<Border> borders;
-    for (const u32 half_edge : sharp)
-        for (const u32 side : {half_edge, opposite_[half_edge]}) {
-            const u32 face = faces.find(side / 3);
-            if (areas[face] < least_area) borders.push_back({areas[face], face, side});
-        }
-    std::ranges::sort(borders);
-    bool is_changed = false;
-    for (std::size_t begin = 0, end = 0; begin < borders.size(); begin = end) {
-        const Border& first = borders[begin];
-        while (end < borders.size() && borders[end].face == first.face) ++end;
-        if (faces.find(first.face) != first.face || areas[first.face] != first.area) continue;  // the face has grown
-        std::map<u32, double> lengths;
-        for (std::size_t i = begin; i < end; ++i) {
-            const u32 side = borders[i].half_edge, neighbour = faces.find(opposite_[side] / 3);
-            if (neighbour == first.face) continue;
-            lengths[neighbour] +=
-                (position(half_edges::end(mesh_, side)) - position(half_edges::start(mesh_, side))).norm();
-        }
-        if (lengths.empty()) continue;
-        const u32 longest =
-            std::ranges::max_element(lengths, {}, [](const auto& entry) { return entry.second; })->first;
-        for (std::size_t i = begin; i < end; ++i) {
-            const u32 side = borders[i].half_edge;
-            if (features_[side] && faces.find(opposite_[side] / 3) == longest) remove_feature(side);
-        }
-        const double area = areas[first.face] + areas[longest];
-        faces.unite(first.face, longest);
-        areas[faces.find(first.face)] = area;
-        is_changed = true;
-    }
-    return is_changed;
 }
 
 Vec3 FeatureNetwork::point_on_line(u32 vertex, u32 next, double distance, bool& is_closed) const {

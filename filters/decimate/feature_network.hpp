@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The feature edges of the mesh that is decimated, at the scale of the largest error, and the classes of its vertices.
-///
-/// Noise makes many edges sharp. Two patterns count as roughness, which the result may smooth. One is a branch with a
-/// free end that is shorter than a few times the largest error. The other is a face of that size which is enclosed by
-/// sharp edges. The sharp edges between larger faces are features.
+/// The feature edges of the mesh that is decimated: its creases and boundary edges; and the classes of its vertices.
 
 #include <span>
 #include <vector>
@@ -15,18 +11,17 @@
 namespace scanmill::decimating {
 
 struct FeatureScale {
-    double sharp_angle = 0, corner_angle = 0;  ///< radians
-    /// Length below which details are roughness. It limits the length of a branch with a free end, and the square root
-    /// of a face's area. A turn of a line is roughness if it vanishes when measured over this distance on both sides.
+    double corner_angle = 0;  ///< radians
+    /// A turn of a line is roughness if it vanishes when measured over this distance on both sides.
     double reach = 0;
 };
 
 class FeatureNetwork {
 public:
-    /// `opposite`: half_edges::opposites(mesh), `normals`: facet_normals(). Keeps references to mesh and opposite.
-    /// Throws Error as sharp_half_edges() does.
-    FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
-                   const FeatureScale& scale, unsigned threads);
+    /// `opposite`: half_edges::opposites(mesh), `sharp`: whether the edge of a half-edge is on a crease, see
+    /// creases.hpp. Keeps references to mesh and opposite.
+    FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool> sharp,
+                   const FeatureScale& scale);
 
     VertexClass vertex_class(u32 vertex) const { return classes_[vertex]; }
     /// Whether the vertex is the apex of a cone: a corner without feature edges.
@@ -68,9 +63,6 @@ public:
 private:
     const Vec3& position(u32 vertex) const { return mesh_.positions[vertex]; }
     void count_features();
-    void remove_feature(u32 half_edge);
-    void prune_branches(double reach);
-    bool merge_small_faces(double least_area);
     Vec3 point_on_line(u32 vertex, u32 next, double distance, bool& is_closed) const;
     bool turns(u32 vertex, const FeatureScale& scale) const;
     void classify(const FeatureScale& scale);

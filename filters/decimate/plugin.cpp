@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = DecimateParams;
-    return Declare<P>("decimate", 4)
+    return Declare<P>("decimate", 5)
         .summary("Removes vertices while the surface stays within a distance, and proves the distance.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 4")
         .ties(
@@ -40,6 +40,11 @@ SCANMILL_FILTER() {
                "An edge is sharp if the normals of its triangles differ by more than this.", at_least(20), at_most(75))
         .param("corner-angle", &P::corner_angle, "A vertex where a feature line turns by more than this is a corner.",
                at_least(0), at_most(180))
+        .param("noise", &P::noise,
+               "Standard deviation of the vertices' distances from the true surface. Where triangles are too small for "
+               "this noise, creases are found by the normals of neighbourhoods. `auto` estimates the noise; with 0, "
+               "every edge is judged by its triangles.",
+               at_least(0), word("auto"))
         .param("normal-deviation", &P::normal_deviation,
                "Largest angle between the normal of a new triangle and the mean normal of those it replaces.",
                at_least(0), at_most(89))

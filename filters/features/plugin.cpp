@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = FeatureParams;
-    return Declare<P>("features", 3)
+    return Declare<P>("features", 4)
         .summary("Finds the boundaries and sharp edges of a mesh, and the corners where such lines meet or turn.")
         .source("Wang 2006, chapter 4, for loops, holes and sharp edges")
         .ties(

@@ -15,7 +15,7 @@
 #include "filters/decimate/cases.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/coincident.hpp"
-#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/creases.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -33,8 +33,8 @@ public:
     Removals(const TriangleMesh& mesh, double max_error, double least_angle_degrees, bool flips)
         : mesh_(mesh),
           opposite_(half_edges::opposites(mesh_)),
-          normals_(facet_normals(mesh_, opposite_, 1)),
-          features_(mesh_, opposite_, normals_.unit, {0.7, 0.6, 4 * max_error}, 1),
+          creases_(find_creases(mesh_, opposite_, {0.7, {}, 4 * max_error}, Execution())),
+          features_(mesh_, opposite_, creases_.sharp, {0.6, std::max(creases_.reach, 4 * max_error)}),
           lowest_(lowest_at_position(mesh_.positions.span())),
           original_(mesh_, opposite_, lowest_, features_),
           surface_(original_, EditableMesh(mesh_, opposite_), {}) {
@@ -277,7 +277,7 @@ private:
 
     TriangleMesh mesh_;
     Array<u32> opposite_;
-    FacetNormals normals_;
+    Creases creases_;
     FeatureNetwork features_;
     Array<u32> lowest_;
     OriginalSurface original_;

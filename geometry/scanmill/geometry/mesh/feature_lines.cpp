@@ -9,13 +9,11 @@
 #include <tuple>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
+#include "scanmill/geometry/mesh/creases.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
-#include "scanmill/geometry/mesh/noisy_normals.hpp"
-#include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
 
@@ -291,34 +289,32 @@ FeatureGraph graph_of(const TriangleMesh& mesh, std::span<const u32> opposite, s
 }  // namespace
 
 FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, const Execution& execution) {
-    const unsigned threads = execution.threads();
     require_sound(params);
     const Array<u32> opposite = half_edges::opposites(mesh);
     require_measurable(mesh);
-    FacetNormals normals = facet_normals(mesh, opposite, threads);
-    const double noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution);
-    NoisyNormals reliable =
-        noisy_normals(mesh, opposite, normals.unit, noise, params.sharp_angle.in_radians(), execution);
-    normals.unit = std::move(reliable.unit);
+    const CreaseParams crease_params{
+        .sharp_angle = params.sharp_angle.in_radians(),
+        .noise = params.noise ? std::optional(params.noise->value()) : std::nullopt,
+    };
+    Creases creases = find_creases(mesh, opposite, crease_params, execution);
+    std::vector<bool>& sharp = creases.sharp;
     const double corner_angle = params.corner_angle.in_radians() + angle_tie;
-    std::vector<bool> sharp =
-        sharp_half_edges(mesh, opposite, normals.unit, params.sharp_angle.in_radians() + angle_tie, threads);
 
     execution.check_cancelled();
     FeatureLines result;
-    result.noise = noise;
+    result.noise = creases.noise;
     FeatureCounts& counts = result.counts;
-    counts.unreliable = reliable.unreliable;
-    counts.without_area = normals.without_area;
-    std::optional<FeatureNet> net(std::in_place, mesh, opposite, sharp, corner_angle, reliable.reach);
+    counts.unreliable = creases.unreliable;
+    counts.without_area = creases.without_area;
+    std::optional<FeatureNet> net(std::in_place, mesh, opposite, sharp, corner_angle, creases.reach);
     std::vector<FeatureLine> lines = net->lines();
     counts.dropped = drop_short(mesh, opposite, lines, params.min_length.value(), sharp);
     if (counts.dropped > 0) {
-        net.emplace(mesh, opposite, sharp, corner_angle, reliable.reach);
+        net.emplace(mesh, opposite, sharp, corner_angle, creases.reach);
         lines = net->lines();
     }
-    counts.ambiguous = classify_loops(mesh, opposite, normals.unit, lines);
-    result.graph = graph_of(mesh, opposite, normals.unit, *net, lines);
+    counts.ambiguous = classify_loops(mesh, opposite, creases.normals, lines);
+    result.graph = graph_of(mesh, opposite, creases.normals, *net, lines);
     result.mesh_vertices.assign(net->vertices().begin(), net->vertices().end());
 
     const auto count = [&](FeatureType type) {
