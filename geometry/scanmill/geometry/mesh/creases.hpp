@@ -77,7 +77,7 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
 /// that bridges a right-angled crease.
 ///
 /// On scans of fandisk, anchor and a coupling with noise that were smoothed and thinned, an eighth finds 98, 98 and 93 %
-/// of the length of the models' creases, a sixteenth 92, 96 and 70 %. On scans that are only thinned, a quarter adds 8
+/// of the length of the models' creases, a sixteenth 91, 95 and 35 %. On scans that are only thinned, a quarter adds 8
 /// to 13 % of false ones, and an eighth 1 to 3 %.
 double sampling_error(const TriangleMesh& mesh);
 
