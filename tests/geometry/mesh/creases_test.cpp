@@ -310,9 +310,9 @@ TEST(Creases, CanBeCancelled) {
     EXPECT_THROW(find_creases(mesh, half_edges::opposites(mesh), {40 * degree, 0.1, 0}, Execution(options)), Cancelled);
 }
 
-TEST(SamplingError, IsAnEighthOfTheMedianVoxel) {
+TEST(SamplingError, IsATwelfthOfTheMedianVoxel) {
     EXPECT_EQ(sampling_error(cube()), 0);
-    EXPECT_EQ(sampling_error(sampled(cube(), 2)), 0.25);
+    EXPECT_DOUBLE_EQ(sampling_error(sampled(cube(), 3)), 0.25);
     TriangleMesh mesh = cube();
     Array<double> sizes(mesh.positions.size(), 0);  // points that were not thinned
     sizes[0] = 8, sizes[1] = 16, sizes[2] = 80;

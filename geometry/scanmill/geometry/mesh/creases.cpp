@@ -362,7 +362,7 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
 }
 
 double sampling_error(const TriangleMesh& mesh) {
-    constexpr double share = 0.125;
+    constexpr double share = 1. / 12;
     const Column* column = mesh.vertex_columns.find("bin-size");
     if (column == nullptr || column->components() != 1) return 0;
     std::vector<double> sizes;
