@@ -121,7 +121,8 @@ public:
         const auto component_of = [&](u32 edge) { return components.find(half_edges::start(mesh_, edge)); };
         std::vector<double> lengths(mesh_.positions.size(), 0);
         for (const u32 edge : edges)
-            lengths[component_of(edge)] += is_boundary(edge) ? length : step(half_edges::start(mesh_, edge), edge).norm();
+            lengths[component_of(edge)] +=
+                is_boundary(edge) ? length : step(half_edges::start(mesh_, edge), edge).norm();
         for (const u32 edge : edges)
             if (lengths[component_of(edge)] < length) remove(edge);
     }

@@ -56,7 +56,8 @@ struct Creases {
 ///    directions may differ by 60 degrees.
 /// 4. Isolated lines that are shorter than the reach of the normals are removed. An isolated line meets neither other
 ///    lines nor the boundary.
-/// 5. Details below the least size are removed: lines and branches with a free end that are shorter, the shortest first,
+/// 5. Details below the least size are removed: lines and branches with a free end that are shorter, the shortest
+/// first,
 ///    and faces enclosed by creases with less than the square of it as area. A small face joins the face with the
 ///    longest common border.
 ///
@@ -82,10 +83,10 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
 /// twelfth.
 double sampling_error(const TriangleMesh& mesh);
 
-/// By half-edge: whether its edge is a declared sharp edge and on a line of such edges. Declared edges that meet neither
-/// the boundary nor other declared edges, and that are together shorter than `least_length`, form no line. Without
-/// `least_length`, it is three times the median length of the mesh's edges. Equal for opposite half-edges, false on the
-/// boundary. Ties: a line that is exactly as long as the least length is a crease.
+/// By half-edge: whether its edge is a declared sharp edge and on a line of such edges. Declared edges that meet
+/// neither the boundary nor other declared edges, and that are together shorter than `least_length`, form no line.
+/// Without `least_length`, it is three times the median length of the mesh's edges. Equal for opposite half-edges,
+/// false on the boundary. Ties: a line that is exactly as long as the least length is a crease.
 ///
 /// Pre: as find_creases(). Throws Error for a declared sharp edge that is in no triangle. Cost: linear.
 std::vector<bool> declared_creases(const TriangleMesh& mesh, std::span<const u32> opposite,
