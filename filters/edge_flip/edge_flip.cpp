@@ -11,7 +11,10 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/mesh/creases.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
+#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
@@ -134,9 +137,20 @@ public:
             if (is_sharp[h]) flags_[h] = sharp;
     }
 
+    /// Judges the mesh in spite of its noise: creases stay, and unreliable triangles take the normals of
+    /// neighbourhoods.
+    void respect(const Creases& creases) {
+        for (std::size_t h = 0; h < flags_.size(); ++h)
+            if (creases.sharp[h]) flags_[h] |= sharp, has_sharp_ = true;
+        if (creases.unreliable == 0) return;
+        normals_.assign(mesh_.rows(), Vec3(Vec3::Zero()));
+        for (u32 row = 0; row < mesh_.rows(); ++row)
+            if (creases.normals[row] != creases.own_normals[row]) normals_[row] = creases.normals[row];
+    }
+
     void run(Context& context) {
         for (u32 row = 0; row < mesh_.rows(); ++row)
-            if (normal_of(row).isZero(0)) push(longest_edge(row));
+            if (own_normal(row).isZero(0)) push(longest_edge(row));
         for (u32 h = 0; h < half_edges(); ++h)
             if (h < mesh_.opposite(h)) push(h);
         do {
@@ -177,10 +191,14 @@ private:
         const Vec3 one = positions_[b] - positions_[a], two = positions_[c] - positions_[a];
         return {one, two, one.cross(two)};
     }
-    Vec3 normal_of(u32 row) const {
+    Vec3 own_normal(u32 row) const {
         const auto [one, two, normal] = shape(row);
         return unit_normal(normal, one, two, two - one);
     }
+    bool is_unreliable(u32 row) const { return !normals_.empty() && !normals_[row].isZero(0); }
+    Vec3 normal_of(u32 row) const { return is_unreliable(row) ? normals_[row] : own_normal(row); }
+    /// The normal of the surface at two triangles. Triangles of their four vertices have no better one.
+    Vec3 common_normal(u32 one, u32 two) const { return (normal_of(one) + normal_of(two)).normalized(); }
     u32 longest_edge(u32 row) const {
         const auto length = [&](u32 h) {
             return (positions_[mesh_.end(h)] - positions_[mesh_.start(h)]).squaredNorm();
@@ -238,10 +256,16 @@ private:
     bool folds(u32 h, const Quadrilateral& quad) const {
         Vec3 abc = unit_normal(quad.abc, quad.ab, quad.ac, quad.bc),
              bad = unit_normal(quad.bad, quad.ab, quad.ad, quad.bd);
-        const Vec3 cad = unit_normal(quad.cad, quad.ac, quad.ad, quad.cd),
-                   dbc = unit_normal(quad.dbc, quad.bc, quad.bd, quad.cd);
+        Vec3 cad = unit_normal(quad.cad, quad.ac, quad.ad, quad.cd),
+             dbc = unit_normal(quad.dbc, quad.bc, quad.bd, quad.cd);
         const Vec3 mean = quad.abc + quad.bad;
         if (!(cad.dot(dbc) > 0 && cad.dot(mean) > 0 && dbc.dot(mean) > 0)) return true;
+        const u32 other = mesh_.opposite(h);
+        if (is_unreliable(h / 3) || is_unreliable(other / 3)) {
+            abc = normal_of(h / 3);
+            bad = normal_of(other / 3);
+            cad = dbc = common_normal(h / 3, other / 3);
+        }
         if (abc.isZero(0) && bad.isZero(0)) return true;
         if (abc.isZero(0)) abc = bad;
         if (bad.isZero(0)) bad = abc;
@@ -254,7 +278,6 @@ private:
             before = std::min(before, outer.dot(old_normal));
             after = std::min(after, outer.dot(new_normal));
         };
-        const u32 other = mesh_.opposite(h);
         add_outer(EditableMesh::after(h), abc, dbc);
         add_outer(EditableMesh::before(h), abc, cad);
         add_outer(EditableMesh::after(other), bad, cad);
@@ -274,6 +297,8 @@ private:
             };
             set(h1, ca), set(h2, ad), set(o1, db), set(o2, bc);
         }
+        if (is_unreliable(h / 3) || is_unreliable(other / 3))
+            normals_[h / 3] = normals_[other / 3] = common_normal(h / 3, other / 3);
         mesh_.flip(h);
         for (const u32 edge : {h1, h2, o1, o2}) push(edge);
     }
@@ -295,6 +320,8 @@ private:
     Criterion criterion_;
     double keep_cosine_, deviation_, squared_max_edge_ = std::numeric_limits<double>::infinity();
     bool has_sharp_ = false;
+    /// By row: the normal of an unreliable triangle, and zero for others. Empty without unreliable triangles.
+    Array<Vec3> normals_;
     /// By half-edge: the bits `sharp` (its edge is sharp) and `pending` (it is in the queue). A flip assigns some
     /// half-edges to other edges. A half-edge in the queue then represents its new edge.
     std::vector<u8> flags_;
@@ -342,6 +369,9 @@ void require_usable(const TriangleMesh& mesh, const EdgeFlipParams& params) {
     if (params.max_edge && !(params.max_edge->value() > 0))
         throw Error("max-edge must be above 0; it is {:g} u", params.max_edge->value())
             .hint("leave max-edge out to allow new edges of any length");
+    if (params.noise && !(params.noise->value() >= 0 && std::isfinite(params.noise->value())))
+        throw Error("noise must be 0 or more; it is {:g} u", params.noise->value())
+            .hint("leave noise out to have it estimated");
     require_triangles(mesh, "edge-flip needs at least one");
 }
 
@@ -367,9 +397,17 @@ void warn_of_left(const BlockedEdges& left, const EdgeFlipParams& params, Contex
 EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params, Context& context) {
     require_usable(mesh, params);
     context.check_cancelled();
-    Array<u32> opposite = half_edges::opposites(mesh);
+    const Array<u32> opposite = half_edges::opposites(mesh);
     const std::vector<bool> is_sharp = declared_sharp_half_edges(mesh, opposite);
-    Flipping flipping(mesh, std::move(opposite), is_sharp, params);
+    Flipping flipping(mesh, opposite, is_sharp, params);
+    // Without noise, normals of triangles are reliable, and keep_angle protects creases.
+    if (params.criterion != Criterion::paper) {
+        const double noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, context);
+        const double sharp_angle = FeatureParams().sharp_angle.in_radians();
+        if (noise > 0)
+            flipping.respect(
+                find_creases(mesh, opposite, {.sharp_angle = sharp_angle, .noise = noise, .least_size = 0}, context));
+    }
     EdgeFlipResult result;
     result.min_angle_before = flipping.least_angle();
     flipping.run(context);

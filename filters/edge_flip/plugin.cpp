@@ -6,14 +6,14 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = EdgeFlipParams;
-    return Declare<P>("edge-flip", 1)
+    return Declare<P>("edge-flip", 2)
         .summary("Flips edges of a mesh where this improves the triangles and hardly moves the surface.")
         .source("Sangveraphunsiri, Srirakulchai 2006, section 4; Lawson 1977 for the Delaunay criterion")
         .ties("An edge stays if the other diagonal is equally good, to 1e-9.")
         .not_finite("Refused; the message gives their number and the first one.")
         .in<TriangleMesh>("mesh",
                           "One fan of triangles at every vertex, at most two triangles at an edge, oriented "
-                          "consistently. Its sharp edges are never flipped.")
+                          "consistently. Its sharp edges are never flipped; on a noisy mesh, neither are creases.")
         .out<TriangleMesh>("mesh",
                            "The same vertices with their columns, and the same sharp edges; without face and edge "
                            "columns.")
@@ -33,6 +33,11 @@ SCANMILL_FILTER() {
             "Largest distance between the two diagonals, as a share of the shorter one: how far the surface may move.",
             at_least(0))
         .param("max-edge", &P::max_edge, "New edges are shorter than this.", above(0))
+        .param("noise", &P::noise,
+               "Standard deviation of the vertices' distances from the true surface. Triangles that are too small for "
+               "this noise are judged by the normals of neighbourhoods, and creases stay. `auto` estimates the noise; "
+               "with 0, all triangles are judged by their own normals.",
+               at_least(0), word("auto"))
         .metric("flips", Unit::count, "Number of edges that were flipped.", headline)
         .metric("min-angle-before", Unit::angle, "Least angle of all triangles before the flips.")
         .metric("min-angle-after", Unit::angle, "Least angle of all triangles after the flips.", headline,

@@ -94,6 +94,7 @@ std::vector<EdgeFlipParams> parameters() {
     for (const Criterion criterion : all_criteria) {
         EdgeFlipParams params;
         params.criterion = criterion;
+        params.noise = Length(0);  // the rules with the triangles' own normals, however rough the mesh is
         all.push_back(params);
         params.keep_angle = Angle::degrees(5);
         params.deviation = Ratio::percent(30);

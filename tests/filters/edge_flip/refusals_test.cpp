@@ -123,6 +123,13 @@ TEST(EdgeFlipRefuses, ParametersOutOfRange) {
         EXPECT_THAT(refusal(kite(), params).sentence(), HasSubstr("keep-angle must be from 0 to 60 deg; it is"));
     }
     params = {};
+    for (const double noise :
+         {-0.1, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+        params.noise = Length(noise);
+        EXPECT_FALSE(refusal(kite(), params).hint().empty());
+        EXPECT_THAT(refusal(kite(), params).sentence(), HasSubstr("noise must be 0 or more; it is"));
+    }
+    params = {};
     for (const double deviation : {-0.1, std::numeric_limits<double>::quiet_NaN()}) {
         params.deviation = Ratio::fraction(deviation);
         EXPECT_FALSE(refusal(kite(), params).hint().empty());
