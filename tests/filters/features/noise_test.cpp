@@ -103,6 +103,21 @@ TriangleMesh noisy_cube(double noise) {
     });
 }
 
+TEST(FeaturesOfANoisyRoof, HaveDifferentNormalsOnTheTwoSidesOfEverySegment) {
+    // About the sharp angle, the ridge has gaps. Edges that close them can have the same normal on both sides.
+    std::size_t segments = 0;
+    for (const double degrees : {36.0, 38.0, 45.0})
+        for (const double noise : {0.1, 0.15}) {
+            const FeatureGraph graph = features_of(noisy_roof(degrees, noise)).graph;
+            for (const FeaturePolyline& line : graph.polylines) {
+                if (line.type != FeatureType::crease) continue;
+                for (u32 i = line.begin; i + !line.closed < line.end; ++i, ++segments)
+                    EXPECT_GT((graph.left_normals[i] - graph.right_normals[i]).norm(), 0) << degrees << ", " << noise;
+            }
+        }
+    EXPECT_GT(segments, 100u);
+}
+
 TEST(FeaturesOfANoisyCube, AreItsTwelveEdges_AndACornerIsNearEachOfItsCorners) {
     EXPECT_EQ(features_of(noisy_cube(0)).counts.creases, 12u);
     const FeatureLines lines = features_of(noisy_cube(0.1));

@@ -14,6 +14,7 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/creases.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
 
@@ -256,8 +257,26 @@ std::size_t classify_loops(const TriangleMesh& mesh, std::span<const u32> opposi
     return static_cast<std::size_t>(std::ranges::count(shapes, false, &LoopShape::clear));
 }
 
+/// The half-edge of the line nearest to number `i` where the normals of the two sides differ, at most a gap away; the
+/// earlier one of two. `i` itself if there is none.
+u32 nearest_with_turn(const FeatureLine& line, std::size_t i, std::span<const u32> opposite,
+                      std::span<const Vec3> normals) {
+    constexpr std::size_t most_gap_edges = 3;  // as in find_creases()
+    const auto turns = [&](std::size_t at) {
+        const u32 half_edge = line.half_edges[at];
+        return angle_between(normals[half_edge / 3], normals[opposite[half_edge] / 3]) > angle_tie;
+    };
+    for (std::size_t distance = 0; distance <= most_gap_edges; ++distance) {
+        if (distance <= i && turns(i - distance)) return line.half_edges[i - distance];
+        if (i + distance < line.half_edges.size() && turns(i + distance)) return line.half_edges[i + distance];
+    }
+    return line.half_edges[i];
+}
+
+/// `closes_gaps`: creases may have edges without a turn, which close gaps. The normals there are those of the nearest
+/// edge of the line with a turn.
 FeatureGraph graph_of(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
-                      const FeatureNet& net, std::span<const FeatureLine> lines) {
+                      bool closes_gaps, const FeatureNet& net, std::span<const FeatureLine> lines) {
     FeatureGraph graph;
     graph.frame = mesh.frame;
     graph.positions = gather(mesh.positions, net.vertices());
@@ -265,8 +284,11 @@ FeatureGraph graph_of(const TriangleMesh& mesh, std::span<const u32> opposite, s
     Array<Vec3> left, right;
     for (const FeatureLine& line : lines) {
         const u32 begin = static_cast<u32>(vertices.size());
-        for (const u32 half_edge : line.half_edges) {
-            vertices.push_back(net.number_at_start(half_edge));
+        for (std::size_t i = 0; i < line.half_edges.size(); ++i) {
+            vertices.push_back(net.number_at_start(line.half_edges[i]));
+            const u32 half_edge = line.type == FeatureType::crease && closes_gaps
+                                      ? nearest_with_turn(line, i, opposite, normals)
+                                      : line.half_edges[i];
             left.push_back(normals[half_edge / 3]);
             right.push_back(line.type == FeatureType::crease ? normals[opposite[half_edge] / 3] : Vec3(Vec3::Zero()));
         }
@@ -294,7 +316,7 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     require_measurable(mesh);
     const CreaseParams crease_params{
         .sharp_angle = params.sharp_angle.in_radians(),
-        .noise = params.noise ? std::optional(params.noise->value()) : std::nullopt,
+        .noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution),
     };
     Creases creases = find_creases(mesh, opposite, crease_params, execution);
     std::vector<bool>& sharp = creases.sharp;
@@ -314,7 +336,7 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
         lines = net->lines();
     }
     counts.ambiguous = classify_loops(mesh, opposite, creases.normals, lines);
-    result.graph = graph_of(mesh, opposite, creases.normals, *net, lines);
+    result.graph = graph_of(mesh, opposite, creases.normals, creases.reach > 0, *net, lines);
     result.mesh_vertices.assign(net->vertices().begin(), net->vertices().end());
 
     const auto count = [&](FeatureType type) {
