@@ -24,8 +24,7 @@ namespace scanmill {
 
 struct CreaseParams {
     double sharp_angle = 0;  ///< radians; angles that exceed it by at most `angle_tie` count as equal to it
-    /// Standard deviation of the vertices' distances from the surface. If absent, it is vertex_noise(), or without
-    /// noise sampling_error().
+    /// Standard deviation of the vertices' distances from the surface. If absent, it is vertex_noise().
     std::optional<double> noise;
     /// Lines and branches with a free end that are shorter than this are not creases, and neither are the borders of
     /// faces that are as small. 0: lengths and areas do not matter.
@@ -47,7 +46,7 @@ struct Creases {
 };
 
 /// Finds the creases in five steps. Steps 2 to 4 apply only if triangles took normals of neighbourhoods, and step 5
-/// only with a least size. So the creases of a mesh without error are its sharp edges.
+/// only with a least size. So the creases of a mesh without noise are its sharp edges.
 ///
 /// 1. *Seeds* are declared sharp edges, and edges where the normals differ by more than the sharp angle.
 /// 2. From a free end of a line, edges above half the sharp angle continue it: at each vertex the edge with the largest
@@ -57,13 +56,8 @@ struct Creases {
 /// 4. Isolated lines that are shorter than the reach of the normals are removed. An isolated line meets neither other
 ///    lines nor the boundary.
 /// 5. Details below the least size are removed: lines and branches with a free end that are shorter, the shortest
-/// first,
-///    and faces enclosed by creases with less than the square of it as area. A small face joins the face with the
+///    first, and faces enclosed by creases with less than the square of it as area. A small face joins the face with the
 ///    longest common border.
-///
-/// The sampling error concerns only triangles near a part of a crease whose turn is divided, that is, at most two
-/// triangles away from an edge above a quarter of the sharp angle that is not sharp. With noise, all triangles that are
-/// too small for it count.
 ///
 /// Pre: finite positions; `opposite` is half_edges::opposites(mesh). Throws Error for a declared sharp edge that is in
 /// no triangle, and Cancelled.
@@ -72,16 +66,6 @@ struct Creases {
 /// Cost: linear. With noise, the cost of noisy_normals() dominates.
 Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, const CreaseParams& params,
                      const Execution& execution);
-
-/// The error of a surface near its creases because it is sampled: a twelfth of the median of the vertex column
-/// `bin-size`, which voxel-thin writes, and 0 without that column. The surface is about 0.16 h from a chord of length h
-/// that bridges a right-angled crease.
-///
-/// A larger share finds more of the creases, and takes more of an organic surface's folds for creases. On smoothed and
-/// thinned scans of fandisk and anchor, a twelfth finds 95 and 96 % of the length of the models' creases, an eighth 98
-/// %, a sixteenth 91 and 95 %. On a scan of the bunny, which has no creases, an eighth finds three times as much as a
-/// twelfth.
-double sampling_error(const TriangleMesh& mesh);
 
 /// By half-edge: whether its edge is a declared sharp edge and on a line of such edges. Declared edges that meet
 /// neither the boundary nor other declared edges, and that are together shorter than `least_length`, form no line.
