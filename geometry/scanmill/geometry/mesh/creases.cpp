@@ -315,8 +315,7 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     FacetNormals own = facet_normals(mesh, opposite, execution.threads());
     result.without_area = own.without_area;
     result.noise = params.noise ? *params.noise : vertex_noise(mesh, opposite, execution);
-    NoisyNormals reliable =
-        noisy_normals(mesh, opposite, own.unit, result.noise, params.sharp_angle, execution);
+    NoisyNormals reliable = noisy_normals(mesh, opposite, own.unit, result.noise, params.sharp_angle, execution);
     result.normals = std::move(reliable.unit);
     result.reach = reliable.reach;
     result.unreliable = reliable.unreliable;

@@ -56,8 +56,8 @@ struct Creases {
 /// 4. Isolated lines that are shorter than the reach of the normals are removed. An isolated line meets neither other
 ///    lines nor the boundary.
 /// 5. Details below the least size are removed: lines and branches with a free end that are shorter, the shortest
-///    first, and faces enclosed by creases with less than the square of it as area. A small face joins the face with the
-///    longest common border.
+///    first, and faces enclosed by creases with less than the square of it as area. A small face joins the face with
+///    the longest common border.
 ///
 /// Pre: finite positions; `opposite` is half_edges::opposites(mesh). Throws Error for a declared sharp edge that is in
 /// no triangle, and Cancelled.
