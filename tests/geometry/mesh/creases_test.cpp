@@ -48,9 +48,6 @@ Creases creases_of(const TriangleMesh& mesh, const CreaseParams& params, unsigne
 std::set<Edge> crease_edges(const TriangleMesh& mesh, std::optional<double> noise, double degrees = 40) {
     return edges_of(mesh, creases_of(mesh, {degrees * degree, noise, 0}).sharp);
 }
-std::set<Edge> declared_lines(const TriangleMesh& mesh, std::optional<double> least_length = std::nullopt) {
-    return edges_of(mesh, declared_creases(mesh, half_edges::opposites(mesh), least_length));
-}
 
 /// 20 by 20 squares with the vertex (column, row) at place(column, row). Vertex numbers are 21 row + column.
 constexpr u32 size = 20;
@@ -225,7 +222,6 @@ TEST(NoisyCreases, AreAllEdgesIfAllAreDeclared) {
     const TriangleMesh mesh = declaring(flat, {all.begin(), all.end()});
     EXPECT_EQ(crease_edges(mesh, 0), all);
     EXPECT_EQ(crease_edges(mesh, 0.1), all);
-    EXPECT_EQ(declared_lines(mesh), all);
 }
 
 TEST(CreasesWithALeastSize, HaveNoShorterBranchesAndNoSmallerFaces) {
@@ -244,32 +240,11 @@ TEST(CreasesWithALeastSize, HaveNoShorterBranchesAndNoSmallerFaces) {
     EXPECT_EQ(found(2.1).size(), size) << "or, across the small face, as many edges";
 }
 
-TEST(DeclaredCreases, AreTheDeclaredEdgesThatFormLines) {
-    // Two thirds of the edges have the length 1, so the least length is 3.
-    EXPECT_THAT(declared_lines(plane()), IsEmpty());
-    EXPECT_THAT(declared_lines(declaring(plane(), middle_edges({{5, 6}}))), IsEmpty());
-    EXPECT_THAT(declared_lines(declaring(plane(), middle_edges({{5, 7}}))), IsEmpty());
-    EXPECT_EQ(declared_lines(declaring(plane(), middle_edges({{5, 8}}))).size(), 3u) << "exactly the least length";
-    EXPECT_EQ(declared_lines(declaring(plane(), middle_edges({{5, 6}, {10, 14}}))).size(), 4u);
-    EXPECT_EQ(declared_lines(declaring(plane(), middle_edges({{0, 1}}))).size(), 1u) << "from the boundary";
-    EXPECT_EQ(declared_lines(declaring(plane(), middle_edges({{5, 6}})), 0.5).size(), 1u);
-    EXPECT_THAT(declared_lines(declaring(rounded_roof(), {})), IsEmpty()) << "whatever the angles";
-}
-
-TEST(DeclaredCreases, OfACoarseMesh_CanBeSingleEdges) {
-    TriangleMesh mesh = cube();
-    mesh.sharp_edges = {make_edge(mesh.triangles[0][0], mesh.triangles[0][1])};
-    EXPECT_THAT(declared_lines(mesh), IsEmpty());
-    const std::set<Edge> edges = crease_edges(cube(), 0);
-    EXPECT_EQ(declared_lines(declaring(cube(), {edges.begin(), edges.end()})), edges);
-}
-
 TEST(Creases, RefuseDeclaredEdgesOfNoTriangle) {
     const TriangleMesh mesh = declaring(cube(), {{0, 7}});
-    for (const Error& error : {error_of([&] { crease_edges(mesh, 0); }), error_of([&] { declared_lines(mesh); })}) {
-        EXPECT_THAT(error.sentence(), HasSubstr("an edge of no triangle"));
-        EXPECT_THAT(error.hint(), HasSubstr("write the mesh again"));
-    }
+    const Error error = error_of([&] { crease_edges(mesh, 0); });
+    EXPECT_THAT(error.sentence(), HasSubstr("an edge of no triangle"));
+    EXPECT_THAT(error.hint(), HasSubstr("write the mesh again"));
 }
 
 TEST(Creases, CanBeCancelled) {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "scanmill/base/disjoint_sets.hpp"
-#include "scanmill/base/statistics.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/noisy_normals.hpp"
@@ -332,26 +331,6 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     }
     if (params.least_size > 0) lines.remove_smaller(params.least_size);
     return result;
-}
-
-std::vector<bool> declared_creases(const TriangleMesh& mesh, std::span<const u32> opposite,
-                                   std::optional<double> least_length) {
-    std::vector<bool> sharp = declared_sharp_half_edges(mesh, opposite);
-    if (mesh.sharp_edges.empty()) return sharp;
-    if (!least_length) {
-        constexpr double few = 3;
-        std::vector<double> lengths;
-        for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
-            const u32 other = opposite[half_edge];
-            if (other == half_edges::no_half_edge || other < half_edge) continue;  // a boundary edge is above all
-            lengths.push_back(
-                (mesh.positions[half_edges::end(mesh, half_edge)] - mesh.positions[half_edges::start(mesh, half_edge)])
-                    .norm());
-        }
-        least_length = lengths.empty() ? 0 : few * median(lengths);
-    }
-    Lines(mesh, opposite, sharp).drop_isolated(*least_length);
-    return sharp;
 }
 
 }  // namespace scanmill

@@ -67,13 +67,4 @@ struct Creases {
 Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, const CreaseParams& params,
                      const Execution& execution);
 
-/// By half-edge: whether its edge is a declared sharp edge and on a line of such edges. Declared edges that meet
-/// neither the boundary nor other declared edges, and that are together shorter than `least_length`, form no line.
-/// Without `least_length`, it is three times the median length of the mesh's edges. Equal for opposite half-edges,
-/// false on the boundary. Ties: a line that is exactly as long as the least length is a crease.
-///
-/// Pre: as find_creases(). Throws Error for a declared sharp edge that is in no triangle. Cost: linear.
-std::vector<bool> declared_creases(const TriangleMesh& mesh, std::span<const u32> opposite,
-                                   std::optional<double> least_length = std::nullopt);
-
 }  // namespace scanmill
