@@ -51,6 +51,34 @@ TriangleMesh l_block(double size) {
                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}, s);
 }
 
+TriangleMesh cube_of_squares(int squares) {
+    std::map<std::array<int, 3>, u32> numbers;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    const auto number_of = [&](const std::array<int, 3>& p) {
+        const auto [found, is_new] = numbers.emplace(p, static_cast<u32>(positions.size()));
+        if (is_new) positions.emplace_back(p[0], p[1], p[2]);
+        return found->second;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const bool upper : {false, true})
+            for (int i = 0; i < squares; ++i)
+                for (int j = 0; j < squares; ++j) {
+                    const auto at = [&](int u, int v) {
+                        std::array<int, 3> p;
+                        p[axis] = upper ? squares : 0;
+                        p[(axis + 1) % 3] = u;
+                        p[(axis + 2) % 3] = v;
+                        return number_of(p);
+                    };
+                    u32 a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+                    if (!upper) std::swap(b, d);
+                    triangles.push_back({a, b, c});
+                    triangles.push_back({a, c, d});
+                }
+    return mesh_of(std::move(positions), std::move(triangles));
+}
+
 TriangleMesh regular_tetrahedron(double edge) {
     const double s = edge / (2 * std::numbers::sqrt2);
     return mesh_of({{s, s, s}, {s, -s, -s}, {-s, s, -s}, {-s, -s, s}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});

@@ -14,6 +14,9 @@ namespace scanmill::test {
 
 /// [0, edge]³; 8 vertices, 12 triangles.
 TriangleMesh cube(double edge = 1);
+
+/// The surface of the cube from 0 to `squares`, as unit squares of two triangles each.
+TriangleMesh cube_of_squares(int squares);
 /// Centred at 0; edge length as given; 4 vertices, 4 triangles. Area √3 edge², volume edge³ / (6 √2).
 TriangleMesh regular_tetrahedron(double edge = 1);
 /// Centred at 0; 12 vertices on the sphere of `radius`, 20 equal triangles.

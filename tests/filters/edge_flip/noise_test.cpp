@@ -3,9 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include <map>
-
 #include "filters/edge_flip/cases.hpp"
+#include "support/shapes.hpp"
 
 namespace scanmill {
 namespace {
@@ -78,41 +77,18 @@ TEST(EdgeFlipOfANoisyRoof, KeepsTheRidge_AndFlipsTheEdgesOfItsFaces) {
 }
 
 TEST(EdgeFlipOfABoxWithoutNoise, IsThatOfItsOwnNormals_AndKeepsItsEdges) {
-    std::map<std::array<int, 3>, u32> numbers;
-    std::vector<Vec3> positions;
-    std::vector<Triangle> triangles;
     constexpr int squares = 12;
+    TriangleMesh mesh = cube_of_squares(squares);
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     Random random(4);
-    const auto number_of = [&](const std::array<int, 3>& p) {
-        const auto [found, is_new] = numbers.emplace(p, static_cast<u32>(positions.size()));
-        if (is_new) {
-            Vec3 position(p[0], p[1], p[2]);
-            int inner = 0;
-            for (const int coordinate : p) inner += coordinate > 0 && coordinate < squares;
-            for (int axis = 0; axis < 3; ++axis)  // moves vertices within their faces
-                if (inner == 2 && position[axis] > 0 && position[axis] < squares)
-                    position[axis] += random.uniform(-0.4, 0.4);
-            positions.push_back(position);
-        }
-        return found->second;
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const bool upper : {false, true})
-            for (int i = 0; i < squares; ++i)
-                for (int j = 0; j < squares; ++j) {
-                    const auto at = [&](int u, int v) {
-                        std::array<int, 3> p;
-                        p[axis] = upper ? squares : 0;
-                        p[(axis + 1) % 3] = u;
-                        p[(axis + 2) % 3] = v;
-                        return number_of(p);
-                    };
-                    u32 a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-                    if (!upper) std::swap(b, d);
-                    triangles.push_back({a, b, c});
-                    triangles.push_back({a, c, d});
-                }
-    const TriangleMesh mesh = mesh_of(positions, triangles);
+    for (Vec3& p : positions) {
+        std::array<bool, 3> is_inner;
+        for (std::size_t axis = 0; axis < 3; ++axis) is_inner[axis] = p[axis] > 0 && p[axis] < squares;
+        if (std::ranges::count(is_inner, true) != 2) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)  // within the face
+            if (is_inner[axis]) p[axis] += random.uniform(-0.4, 0.4);
+    }
+    mesh.positions = std::move(positions);
     const EdgeFlipResult own = flipped_with_noise(mesh, 0), estimated = flipped_with_noise(mesh, std::nullopt);
     EXPECT_GT(own.flips.size(), 50u);
     EXPECT_EQ(estimated.flips, own.flips);
@@ -121,8 +97,8 @@ TEST(EdgeFlipOfABoxWithoutNoise, IsThatOfItsOwnNormals_AndKeepsItsEdges) {
     for (const auto& [a, b] : edges) {
         int common = 0;
         for (int axis = 0; axis < 3; ++axis)
-            common +=
-                positions[a][axis] == positions[b][axis] && (positions[a][axis] == 0 || positions[a][axis] == squares);
+            common += mesh.positions[a][axis] == mesh.positions[b][axis] &&
+                      (mesh.positions[a][axis] == 0 || mesh.positions[a][axis] == squares);
         along += common == 2;
     }
     EXPECT_EQ(along, 12u * squares);

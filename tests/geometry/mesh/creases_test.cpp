@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <map>
 #include <numbers>
 #include <random>
 #include <set>
@@ -97,6 +96,7 @@ TriangleMesh declaring(TriangleMesh mesh, std::vector<Edge> edges) {
     mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
     return mesh;
 }
+
 TEST(CreasesOfACleanMesh, AreItsSharpEdges) {
     EXPECT_EQ(crease_edges(cube(), std::nullopt).size(), 12u);
     EXPECT_EQ(crease_edges(cube(), 0, 89).size(), 12u);
@@ -107,40 +107,15 @@ TEST(CreasesOfACleanMesh, AreItsSharpEdges) {
     EXPECT_THAT(crease_edges(declaring(plane(), one), 0), testing::ElementsAreArray(one));
 }
 
-/// A box of 24 by 24 by 24 squares with noise in each coordinate.
+/// A cube of 24 by 24 by 24 squares with noise in each coordinate.
 TriangleMesh noisy_box(double noise) {
-    constexpr int squares = 24;
-    std::map<std::array<int, 3>, u32> numbers;
-    Array<Vec3> positions;
-    Array<Triangle> triangles;
-    const auto number_of = [&](const std::array<int, 3>& p) {
-        const auto [found, is_new] = numbers.emplace(p, static_cast<u32>(positions.size()));
-        if (is_new) positions.emplace_back(p[0], p[1], p[2]);
-        return found->second;
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const bool upper : {false, true})
-            for (int i = 0; i < squares; ++i)
-                for (int j = 0; j < squares; ++j) {
-                    const auto at = [&](int u, int v) {
-                        std::array<int, 3> p;
-                        p[axis] = upper ? squares : 0;
-                        p[(axis + 1) % 3] = u;
-                        p[(axis + 2) % 3] = v;
-                        return number_of(p);
-                    };
-                    u32 a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-                    if (!upper) std::swap(b, d);
-                    triangles.push_back({a, b, c});
-                    triangles.push_back({a, c, d});
-                }
+    TriangleMesh mesh = cube_of_squares(24);
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal(0, noise);
     for (Vec3& p : positions)
         for (double& coordinate : p) coordinate += normal(random);
-    TriangleMesh mesh;
     mesh.positions = std::move(positions);
-    mesh.triangles = std::move(triangles);
     return mesh;
 }
 

@@ -24,8 +24,6 @@ constexpr u32 none = ~u32(0);
 /// An edge that continues a line has at least this share of the sharp angle: a turn that is divided among two edges
 /// leaves half of it to one of them.
 constexpr double weaker_share = 0.5;
-/// Largest number of edges of a gap. A rounded crease is about as wide.
-constexpr std::size_t most_gap_edges = 3;
 /// Cosine of the largest angle between a line and the path over a gap: 60 degrees, as triangles' edges allow no finer
 /// choice of direction.
 constexpr double least_gap_cosine = 0.5;

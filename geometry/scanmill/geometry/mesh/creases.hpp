@@ -3,15 +3,10 @@
 /// The creases of a mesh: those sharp edges that form lines. All filters that need creases use these functions.
 ///
 /// An edge is *sharp* if the normals of its two triangles differ by more than a sharp angle, or if it is one of the
-/// mesh's declared sharp edges. On a mesh without error, the sharp edges are the creases. Vertices with errors make two
-/// mistakes. Noise turns triangles, so edges in the middle of a face are sharp. And the samples of a surface miss its
-/// creases: triangles between samples bridge them, and smoothing the samples makes them round. The turn is then divided
-/// among two or three edges side by side, each with less than the sharp angle.
-///
-/// Both are errors of the vertices' positions, so one method handles both: normals of neighbourhoods for the triangles
-/// that are small beside the error, see noisy_normals.hpp. The best neighbourhood of a bridging triangle is on one side
-/// of the crease, so the whole turn is at one edge again. What the normals leave to do concerns lines: short gaps, and
-/// sharp edges without a line.
+/// mesh's declared sharp edges. On a mesh without noise, the sharp edges are the creases. Noise turns triangles, so
+/// edges in the middle of a face become sharp, and edges on a crease become less sharp. Therefore triangles that are
+/// small beside the noise take the normals of neighbourhoods, see noisy_normals.hpp. Two errors remain, which concern
+/// lines: short gaps, and sharp edges that form no line.
 
 #include <optional>
 #include <span>
@@ -21,6 +16,9 @@
 #include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
+
+/// Largest number of edges of a gap in a line that find_creases() closes.
+inline constexpr std::size_t most_gap_edges = 3;
 
 struct CreaseParams {
     double sharp_angle = 0;  ///< radians; angles that exceed it by at most `angle_tie` count as equal to it
@@ -51,7 +49,7 @@ struct Creases {
 /// 1. *Seeds* are declared sharp edges, and edges where the normals differ by more than the sharp angle.
 /// 2. From a free end of a line, edges above half the sharp angle continue it: at each vertex the edge with the largest
 ///    angle among those that lead forward. The line ends where it meets another one.
-/// 3. Free ends that are at most three edges apart are joined along edges if the path continues both lines. The
+/// 3. Free ends that are at most most_gap_edges apart are joined along edges if the path continues both lines. The
 ///    directions may differ by 60 degrees.
 /// 4. Isolated lines that are shorter than the reach of the normals are removed. An isolated line meets neither other
 ///    lines nor the boundary.

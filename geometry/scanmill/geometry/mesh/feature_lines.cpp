@@ -14,7 +14,6 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/creases.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
-#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
 
@@ -261,7 +260,6 @@ std::size_t classify_loops(const TriangleMesh& mesh, std::span<const u32> opposi
 /// earlier one of two. `i` itself if there is none.
 u32 nearest_with_turn(const FeatureLine& line, std::size_t i, std::span<const u32> opposite,
                       std::span<const Vec3> normals) {
-    constexpr std::size_t most_gap_edges = 3;  // as in find_creases()
     const auto turns = [&](std::size_t at) {
         const u32 half_edge = line.half_edges[at];
         return angle_between(normals[half_edge / 3], normals[opposite[half_edge] / 3]) > angle_tie;
@@ -314,10 +312,8 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     require_sound(params);
     const Array<u32> opposite = half_edges::opposites(mesh);
     require_measurable(mesh);
-    const CreaseParams crease_params{
-        .sharp_angle = params.sharp_angle.in_radians(),
-        .noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution),
-    };
+    CreaseParams crease_params{.sharp_angle = params.sharp_angle.in_radians(), .noise = {}};
+    if (params.noise) crease_params.noise = params.noise->value();
     Creases creases = find_creases(mesh, opposite, crease_params, execution);
     std::vector<bool>& sharp = creases.sharp;
     const double corner_angle = params.corner_angle.in_radians() + angle_tie;
