@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = DecimateParams;
-    return Declare<P>("decimate", 5)
+    return Declare<P>("decimate", 6)
         .summary("Removes vertices while the surface stays within a distance, and proves the distance.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 4")
         .ties(

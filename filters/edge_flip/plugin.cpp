@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = EdgeFlipParams;
-    return Declare<P>("edge-flip", 2)
+    return Declare<P>("edge-flip", 3)
         .summary("Flips edges of a mesh where this improves the triangles and hardly moves the surface.")
         .source("Sangveraphunsiri, Srirakulchai 2006, section 4; Lawson 1977 for the Delaunay criterion")
         .ties("An edge stays if the other diagonal is equally good, to 1e-9.")

@@ -96,6 +96,11 @@ TriangleMesh declaring(TriangleMesh mesh, std::vector<Edge> edges) {
     mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
     return mesh;
 }
+TriangleMesh sampled(TriangleMesh mesh, double bin_size) {
+    mesh.vertex_columns.add(
+        Column("bin-size", 1, Buffer<double>(Array<double>(mesh.positions.size(), bin_size))).with_length_exponent(1));
+    return mesh;
+}
 
 TEST(CreasesOfACleanMesh, AreItsSharpEdges) {
     EXPECT_EQ(crease_edges(cube(), std::nullopt).size(), 12u);
@@ -105,6 +110,33 @@ TEST(CreasesOfACleanMesh, AreItsSharpEdges) {
     EXPECT_EQ(crease_edges(rounded_roof(), std::nullopt, 29).size(), 3 * size);
     const std::vector<Edge> one = middle_edges({{8, 9}});
     EXPECT_THAT(crease_edges(declaring(plane(), one), 0), testing::ElementsAreArray(one));
+}
+
+TEST(CreasesOfASampledMesh, HaveTheWholeTurnAtOneEdge) {
+    const TriangleMesh mesh = sampled(rounded_roof(), 1);
+    const Creases creases = creases_of(mesh, {40 * degree, {}, 0});
+    EXPECT_EQ(creases.noise, 0) << "an error of the samples is not noise of the vertices";
+    std::vector<bool> rows(size, false);
+    const std::set<Edge> edges = edges_of(mesh, creases.sharp);
+    for (const auto& [a, b] : edges) {
+        for (const u32 vertex : {a, b})
+            EXPECT_THAT(vertex % (size + 1), testing::AllOf(testing::Ge(9u), testing::Le(12u)));
+        if (a / (size + 1) != b / (size + 1)) rows[a / (size + 1)] = true;
+    }
+    EXPECT_EQ(std::ranges::count(rows, true), size);
+    EXPECT_LT(edges.size(), 2 * size) << "one line";
+    EXPECT_THAT(crease_edges(mesh, 0), IsEmpty()) << "a given noise takes the place of the sampling error";
+}
+
+TEST(CreasesOfASampledMesh, WhoseCreasesAreWhole_AreItsSharpEdges) {
+    EXPECT_EQ(crease_edges(sampled(cube(), 1), std::nullopt).size(), 12u);
+    const TriangleMesh roof = bent([](u32 column) { return column == 10 ? 60.0 : 0.0; });
+    EXPECT_THAT(crease_edges(sampled(roof, 1), std::nullopt), testing::ElementsAreArray(middle_edges({{0, size}})));
+}
+
+TEST(CreasesOfASampledMesh, AreNoneWhereItCurvesEvenly) {
+    const TriangleMesh arc = bent([](u32) { return 8.0; });
+    EXPECT_THAT(crease_edges(sampled(arc, 1), std::nullopt), IsEmpty());
 }
 
 /// A cube of 24 by 24 by 24 squares with noise in each coordinate.
@@ -227,6 +259,16 @@ TEST(Creases, CanBeCancelled) {
     options.is_cancelled = [] { return true; };
     const TriangleMesh mesh = noisy_box(0.1);
     EXPECT_THROW(find_creases(mesh, half_edges::opposites(mesh), {40 * degree, 0.1, 0}, Execution(options)), Cancelled);
+}
+
+TEST(SamplingError, IsATwelfthOfTheMedianVoxel) {
+    EXPECT_EQ(sampling_error(cube()), 0);
+    EXPECT_DOUBLE_EQ(sampling_error(sampled(cube(), 3)), 0.25);
+    TriangleMesh mesh = cube();
+    Array<double> sizes(mesh.positions.size(), 0);  // points that were not thinned
+    sizes[0] = 8, sizes[1] = 24, sizes[2] = 80;
+    mesh.vertex_columns.add(Column("bin-size", 1, Buffer<double>(std::move(sizes))));
+    EXPECT_EQ(sampling_error(mesh), 2);
 }
 
 }  // namespace

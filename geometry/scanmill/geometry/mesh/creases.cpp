@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/noisy_normals.hpp"
@@ -24,6 +25,8 @@ constexpr u32 none = ~u32(0);
 /// An edge that continues a line has at least this share of the sharp angle: a turn that is divided among two edges
 /// leaves half of it to one of them.
 constexpr double weaker_share = 0.5;
+/// Largest number of edges side by side among which the turn of a crease is divided.
+constexpr double most_turns = 4;
 /// Cosine of the largest angle between a line and the path over a gap: 60 degrees, as triangles' edges allow no finer
 /// choice of direction.
 constexpr double least_gap_cosine = 0.5;
@@ -304,6 +307,28 @@ private:
     Array<u32> counts_;  ///< by vertex: number of its sharp and boundary edges
 };
 
+/// By triangle, whether it is at most two triangles away from a part of a crease whose turn is divided: an edge where
+/// the normals differ by at most the sharp angle, but by more than its part for the largest number of edges.
+std::vector<bool> near_divided(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
+                               double sharp_angle) {
+    std::vector<bool> is_near(mesh.positions.size(), false), found(mesh.triangles.size(), false);
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
+        const u32 other = opposite[half_edge];
+        if (other > half_edge) continue;
+        const double angle = angle_between(normals[half_edge / 3], normals[other / 3]);
+        if (angle > sharp_angle / most_turns && !(angle > sharp_angle + angle_tie))
+            is_near[half_edges::start(mesh, half_edge)] = is_near[half_edges::end(mesh, half_edge)] = true;
+    }
+    for (int rounds = 0; rounds < 2; ++rounds) {
+        for (u32 t = 0; t < mesh.triangles.size(); ++t)
+            found[t] = std::ranges::any_of(mesh.triangles[t], [&](u32 vertex) { return is_near[vertex]; });
+        for (u32 t = 0; t < mesh.triangles.size(); ++t)
+            if (found[t])
+                for (const u32 vertex : mesh.triangles[t]) is_near[vertex] = true;
+    }
+    return found;
+}
+
 }  // namespace
 
 Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, const CreaseParams& params,
@@ -312,7 +337,11 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     FacetNormals own = facet_normals(mesh, opposite, execution.threads());
     result.without_area = own.without_area;
     result.noise = params.noise ? *params.noise : vertex_noise(mesh, opposite, execution);
-    NoisyNormals reliable = noisy_normals(mesh, opposite, own.unit, result.noise, params.sharp_angle, execution);
+    const double error = params.noise || result.noise > 0 ? result.noise : sampling_error(mesh);
+    // Without noise, triangles that bridge no crease keep their normals, which saves most of the time.
+    std::vector<bool> candidates;
+    if (error > result.noise) candidates = near_divided(mesh, opposite, own.unit, params.sharp_angle);
+    NoisyNormals reliable = noisy_normals(mesh, opposite, own.unit, error, params.sharp_angle, execution, candidates);
     result.normals = std::move(reliable.unit);
     result.reach = reliable.reach;
     result.unreliable = reliable.unreliable;
@@ -329,6 +358,16 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     }
     if (params.least_size > 0) lines.remove_smaller(params.least_size);
     return result;
+}
+
+double sampling_error(const TriangleMesh& mesh) {
+    constexpr double share = 1. / 12;
+    const Column* column = mesh.vertex_columns.find("bin-size");
+    if (column == nullptr || column->components() != 1) return 0;
+    std::vector<double> sizes;
+    for (std::size_t row = 0; row < column->rows(); ++row)
+        if (const double size = column->number(row); size > 0 && std::isfinite(size)) sizes.push_back(size);
+    return sizes.empty() ? 0 : share * median(sizes);
 }
 
 }  // namespace scanmill

@@ -14,6 +14,7 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/creases.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
 
@@ -312,8 +313,10 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     require_sound(params);
     const Array<u32> opposite = half_edges::opposites(mesh);
     require_measurable(mesh);
-    CreaseParams crease_params{.sharp_angle = params.sharp_angle.in_radians(), .noise = {}};
-    if (params.noise) crease_params.noise = params.noise->value();
+    const CreaseParams crease_params{
+        .sharp_angle = params.sharp_angle.in_radians(),
+        .noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution),
+    };
     Creases creases = find_creases(mesh, opposite, crease_params, execution);
     std::vector<bool>& sharp = creases.sharp;
     const double corner_angle = params.corner_angle.in_radians() + angle_tie;

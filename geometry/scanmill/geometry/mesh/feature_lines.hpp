@@ -5,7 +5,8 @@
 /// An edge is *sharp* if the normals of its two triangles differ by more than `sharp_angle`, or if it is one of the
 /// mesh's declared sharp edges. Noise of the vertices can make the normal of a triangle unreliable. Such a normal is
 /// replaced by the normal of a neighbourhood, and lines are followed and gaps in them closed, see creases.hpp. Where a
-/// closed gap has no turn, the normals are those of the nearest edge of the line with a turn.
+/// closed gap has no turn, the normals are those of the nearest edge of the line with a turn. The sampling error of
+/// creases.hpp is not used, because lines that are found with it can run beside the sharpest edges of the mesh.
 ///
 /// A vertex of feature lines is a *corner* if the number of sharp and boundary edges at it is not two, or if the line
 /// turns there by more than `corner_angle`. Angles that exceed a limit by at most 1e-9 rad count as equal to it. So a

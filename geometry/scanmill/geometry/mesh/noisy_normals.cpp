@@ -335,13 +335,15 @@ double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, con
 }
 
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
-                           double noise, double angle, const Execution& execution) {
+                           double noise, double angle, const Execution& execution,
+                           const std::vector<bool>& candidates) {
     NoisyNormals result{Array<Vec3>(own.begin(), own.end())};
     if (!(noise > 0)) return result;
     const Limits limits(noise, angle, mesh.triangles.size());
     std::vector<u32> unreliable;
     for (u32 t = 0; t < mesh.triangles.size(); ++t)
-        if (own[t] != Vec3::Zero() && !half_edges::has_repeated_vertex(mesh.triangles[t]) &&
+        if ((candidates.empty() || candidates[t]) && own[t] != Vec3::Zero() &&
+            !half_edges::has_repeated_vertex(mesh.triangles[t]) &&
             !middle_reaches(scatter_of(mesh, mesh.triangles[t]), limits.reliable))
             unreliable.push_back(t);
     result.unreliable = unreliable.size();

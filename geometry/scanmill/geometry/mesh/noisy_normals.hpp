@@ -13,6 +13,7 @@
 /// explains.
 
 #include <span>
+#include <vector>
 
 #include "scanmill/base/execution.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -67,11 +68,14 @@ struct NoisyNormals {
 /// 256. The largest is the first for which the normal would be reliable and a crease of `angle` through its middle
 /// would be visible.
 ///
+/// `candidates`: by triangle, whether its normal may be unreliable; empty if all may.
+///
 /// Pre: finite positions, noise >= 0, angle >= 0. With noise = 0 the result is `own`. The same bits for any number of
 /// threads. The bits do not depend on the order of the triangles and vertices either, unless vertices have equal
 /// positions. Throws Cancelled. Cost: linear; for a noise of a tenth of the edges' length about 20 µs and 200 bytes per
 /// vertex.
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
-                           double noise, double angle, const Execution& execution);
+                           double noise, double angle, const Execution& execution,
+                           const std::vector<bool>& candidates = {});
 
 }  // namespace scanmill
