@@ -6,12 +6,10 @@
 #include <cassert>
 #include <cmath>
 
-#include "a_patch/checks.hpp"
+#include "a_patch/construction.hpp"
 #include "a_patch/fit.hpp"
 #include "a_patch/normal_fit.hpp"
 #include "a_patch/normals.hpp"
-#include "a_patch/refinement.hpp"
-#include "a_patch/repair.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/statistics.hpp"
@@ -21,6 +19,7 @@
 #include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/patches/a_patch.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
+#include "tessellate/tessellate.hpp"
 
 namespace scanmill {
 
@@ -29,8 +28,6 @@ namespace {
 using namespace a_patches;
 
 constexpr double thinnest = 1e-9;  // smallest ratio of height to longest edge of a triangle with area
-constexpr std::size_t most_bisections = 7;  // rounds
-constexpr std::size_t most_crease_rounds = 2;
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
 // Limits beyond which the result is doubtful: a share of the vertices, a multiple of the points' rms distance from the
@@ -40,6 +37,7 @@ constexpr double most_worse = 1.01;
 constexpr double most_left_out = 0.5;
 constexpr double rounding = 1e-12;  // share of the diagonal
 constexpr double least_regularisation = 1e-6;
+constexpr unsigned segments_for_bulge = 4;  // of a sharp edge, to measure `crease-max`
 
 std::string position_text(const TriangleMesh& mesh, u32 vertex) {
     const Vec3 p = mesh.frame.origin + mesh.positions[vertex];
@@ -169,221 +167,6 @@ Array<Edge> inner_edges(const TriangleMesh& mesh) {
     return inner;
 }
 
-/// The triangles that are too near to the next sheet, and the triangles beside `edges`; ascending.
-std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
-    std::vector<u32> triangles = hull.faults.thin;
-    for (const u32 e : edges) {
-        triangles.push_back(hull.edges[e].first);
-        triangles.push_back(hull.edges[e].second);
-    }
-    std::ranges::sort(triangles);
-    triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
-    return triangles;
-}
-
-/// Repairs the mesh until its hull carries a surface. In the end, every edge beside which tetrahedra do not fit is
-/// straight and needs none.
-class Construction {
-public:
-    Construction(PatchMesh& mesh, const APatchParams& params, Context& context)
-        : mesh_(mesh),
-          params_(params),
-          context_(context) {}
-
-    Hull hull;  ///< refers to the mesh
-    Weights weights;
-    Repairs repairs;
-    std::vector<u32> crossing;  ///< triangles whose parts of the surface intersect other parts; ascending
-
-    void run() {
-        do {
-            context_.check_cancelled();
-            replace_opposing(mesh_, repairs);
-            hull = make_hull(mesh_, params_.apex_factor, params_.split, context_);
-        } while (repair_hull() || repair_creases() || loosen_rest());
-    }
-
-private:
-    /// Repairs triangles that are too near to the next sheet, and tetrahedra inside out beside smooth edges. Returns
-    /// whether the mesh has changed.
-    bool repair_hull() {
-        std::vector<u32> smooth;
-        for (const u32 e : hull.faults.inverted)
-            if (!hull.edges[e].is_sharp) smooth.push_back(e);
-        const std::vector<u32> triangles = triangles_at(hull, smooth);
-        if (is_loosening_) return false;
-        if (triangles.empty()) before_.reset();
-        if (triangles.empty() || is_done_) return false;
-        if (!is_turned_) {
-            turn_normals(mesh_, triangles, repairs);
-            is_turned_ = true;
-        } else if (rounds_ < most_bisections && (!before_ || triangles.size() <= 2 * faults_before_)) {
-            if (!before_) {
-                before_ = mesh_;
-                repairs_before_ = repairs;
-                faults_before_ = triangles.size();
-            }
-            repairs.bisected += bisect(mesh_, triangles);
-            ++rounds_;
-        } else {
-            is_done_ = true;
-            if (!before_ || 2 * triangles.size() <= faults_before_) return false;
-            mesh_ = std::move(*before_);  // bisection did not help
-            repairs = repairs_before_;
-        }
-        return true;
-    }
-
-    /// Computes the weights of the hull. Repairs sharp edges whose creases leave the tetrahedra beside them. Returns
-    /// whether the mesh has changed.
-    bool repair_creases() {
-        weights = make_weights(hull, params_.curvature, context_);
-        doubtful_ = doubtful_edges(weights.patches, context_);
-        if (is_loosening_) return false;
-        std::vector<Edge> creases;
-        for (const auto& edges : {doubtful_, hull.faults.inverted})
-            for (const u32 e : edges)
-                if (hull.edges[e].is_sharp && !hull.edges[e].is_straight)
-                    creases.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
-        if (bisect_creases(creases)) return true;
-        if (!creases.empty() && !is_aligned_) {
-            is_aligned_ = true;
-            align_normals(mesh_, creases, repairs);
-            return true;
-        }
-        return smooth_edges(mesh_, creases, repairs) > 0;
-    }
-
-    /// Bisects the edges of these creases, because the crease of a shorter edge deviates less from it. Undoes all
-    /// bisections unless they repair at least half of the creases. Returns whether the mesh has changed.
-    bool bisect_creases(std::span<const Edge> creases) {
-        if (is_aligned_ || are_creases_bisected_) return false;
-        if (crease_rounds_ == 0) {
-            if (creases.empty()) return false;
-            before_creases_ = mesh_;
-            repairs_before_creases_ = repairs;
-            creases_before_ = creases.size();
-        } else if (creases.empty() || crease_rounds_ == most_crease_rounds) {
-            are_creases_bisected_ = true;
-            if (2 * creases.size() <= creases_before_) return false;
-            mesh_ = std::move(*before_creases_);
-            repairs = repairs_before_creases_;
-            return true;
-        }
-        ++crease_rounds_;
-        repairs.bisected += bisect_edges(mesh_, creases, Middle::of_curve);
-        level_normals(mesh_);
-        return true;
-    }
-
-    /// Gives the vertices at the remaining defects tips, or makes the surface follow the mesh there. Returns whether
-    /// the mesh has changed.
-    bool loosen_rest() {
-        is_loosening_ = true;
-        std::vector<Edge> edges, half_pointed;
-        for (const auto& numbers : {doubtful_, hull.faults.inverted})
-            for (const u32 e : numbers) {
-                const HullEdge& edge = hull.edges[e];
-                if (edge.is_straight) continue;
-                const bool is_half_pointed = edge.is_sharp && mesh_.is_pointed(edge.a) != mesh_.is_pointed(edge.b);
-                (is_half_pointed ? half_pointed : edges).push_back(make_edge(edge.a, edge.b));
-            }
-        if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
-        // A crease that begins at a tip becomes straight up to the middle of its edge. The other end of the edge then
-        // needs no tip.
-        if (!half_pointed.empty()) {
-            repairs.bisected += bisect_edges(mesh_, half_pointed, Middle::of_segment);
-            return true;
-        }
-        open_doubtful();
-        if (repairs.pointed == 0) return false;
-        crossing = crossing_triangles(weights.patches, context_);
-        return loosen(mesh_, {}, crossing, repairs);
-    }
-
-    void open_doubtful() {
-        while (!doubtful_.empty()) {
-            for (const u32 e : doubtful_) hull.edges[e].is_filled = {false, false};
-            weights = make_weights(hull, params_.curvature, context_);
-            doubtful_ = doubtful_edges(weights.patches, context_);
-        }
-    }
-
-    PatchMesh& mesh_;
-    const APatchParams& params_;
-    Context& context_;
-    bool is_turned_ = false, is_aligned_ = false, is_done_ = false, is_loosening_ = false;
-    std::vector<u32> doubtful_;  ///< see doubtful_edges()
-    std::size_t rounds_ = 0, faults_before_ = 0;
-    std::optional<PatchMesh> before_;  ///< the mesh before the first bisection
-    Repairs repairs_before_;
-    bool are_creases_bisected_ = false;
-    std::size_t crease_rounds_ = 0, creases_before_ = 0;
-    std::optional<PatchMesh> before_creases_;
-    Repairs repairs_before_creases_;
-};
-
-/// Undoes changes of a fit where they made parts of the surface intersect, or gave weights a wrong sign. `crossing` are
-/// the triangles whose parts intersected before the fit.
-class Uncrossing {
-public:
-    Uncrossing(Hull& hull, const Weights& before, std::span<const u32> crossing, Curvature curvature, Context& context)
-        : hull_(hull),
-          crossing_before_(crossing),
-          curvature_(curvature),
-          context_(context),
-          edges_before_(hull.edges),
-          is_taken_back_(hull.faces.size(), false) {
-        for (std::size_t row = 0; row < before.patches.tets.size(); ++row)
-            wrong_before_.push_back(wrong_signs(before.patches, row));
-    }
-
-    void run(Weights& weights) {
-        for (;;) {
-            context_.check_cancelled();
-            const std::vector<u32> faulty = faulty_triangles(weights.patches);
-            if (faulty.empty()) return;
-            const std::vector<bool> before = is_taken_back_;
-            for (const u32 f : faulty) is_taken_back_[f] = true;
-            if (is_taken_back_ == before) widen();
-            for (std::size_t f = 0; f < hull_.faces.size(); ++f)
-                for (const u32 e : hull_.faces[f].edges)
-                    if (is_taken_back_[f]) hull_.edges[e].slopes = edges_before_[e].slopes;
-            if (is_taken_back_ == before) return;
-            weights = make_weights(hull_, curvature_, context_);
-        }
-    }
-
-private:
-    std::vector<u32> faulty_triangles(const PatchComplex& patches) const {
-        std::vector<u32> faulty;
-        for (std::size_t row = 0; row < patches.tets.size(); ++row)
-            if (wrong_signs(patches, row) > wrong_before_[row]) faulty.push_back(patches.triangles[row]);
-        for (const u32 e : doubtful_edges(patches, context_))
-            faulty.insert(faulty.end(), {hull_.edges[e].first, hull_.edges[e].second});
-        if (faulty.empty())
-            std::ranges::set_difference(crossing_triangles(patches, context_), crossing_before_,
-                                        std::back_inserter(faulty));
-        return faulty;
-    }
-
-    /// Adds the neighbours of the triangles that are taken back.
-    void widen() {
-        const std::vector<bool> before = is_taken_back_;
-        for (const HullEdge& edge : hull_.edges)
-            if (edge.second != HullEdge::none && before[edge.first] != before[edge.second])
-                is_taken_back_[edge.first] = is_taken_back_[edge.second] = true;
-    }
-
-    Hull& hull_;
-    std::span<const u32> crossing_before_;
-    Curvature curvature_;
-    Context& context_;
-    std::vector<HullEdge> edges_before_;
-    std::vector<bool> is_taken_back_;
-    std::vector<std::size_t> wrong_before_;
-};
-
 /// Fits the slopes of the construction's hull, and measures the distances of the points. Returns the new weights. Pre:
 /// the construction's weights are those of its hull, without violations at creases.
 Weights fit_and_measure(Construction& construction, const PointCloud* points, const APatchParams& params,
@@ -394,13 +177,12 @@ Weights fit_and_measure(Construction& construction, const PointCloud* points, co
     const LocatedPoints located = locate(weights.patches, positions, context);
     result.left_out = located.left_out;
     result.unfairness_before = unfairness(hull, params.curvature);
-    const auto violating_edges = [&](const PatchComplex& patches) { return doubtful_edges(patches, context); };
-    std::optional<Uncrossing> uncrossing;
-    if (result.repairs.pointed > 0) uncrossing.emplace(hull, weights, construction.crossing, params.curvature, context);
+    const auto violating_triangles = [&](const PatchComplex& patches) {
+        return construction.violating_triangles(patches);
+    };
     FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
-                           {params.fit, params.fairing, params.regularisation}, violating_edges, context);
+                           {params.fit, params.fairing, params.regularisation}, violating_triangles, context);
     weights = std::move(fitted.weights);
-    if (uncrossing && (params.fairing > 0 || (params.fit && !located.points.empty()))) uncrossing->run(weights);
     result.regularisation = fitted.regularisation;
     result.unfairness_after = unfairness(hull, params.curvature);
     context.progress(0.8);
@@ -437,14 +219,18 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
         context.warn(fmt::format("{} sharp, because the mesh is folded there",
                                  count_text(repairs.creased, "edge becomes", "edges become")));
     if (repairs.smoothed > 0)
-        context.warn(fmt::format("{} smooth, because no crease fits there",
-                                 count_text(repairs.smoothed, "blunt sharp edge becomes", "blunt sharp edges become")));
-    if (repairs.pointed > 0) {
+        context.warn(fmt::format("{} smooth, because the surface has nearly one normal on both sides",
+                                 count_text(repairs.smoothed, "sharp edge becomes", "sharp edges become")));
+    if (repairs.opened > 0)
+        context.warn(
+            fmt::format("at {} a narrow straight strip joins the surfaces of the two triangles, because no "
+                        "tetrahedra fit between them",
+                        count_text(repairs.opened, "edge", "edges")));
+    if (result.loosened > 0) {
         const std::string text = fmt::format(
-            "no smooth surface fits at {} of {} vertices: the surface has a tip at each of them, and follows the mesh "
-            "at {}",
-            repairs.pointed, counts.vertices + repairs.bisected, count_text(repairs.straightened, "edge", "edges"));
-        if (static_cast<double>(repairs.pointed) >
+            "no smooth surface fits at {} of {} vertices: the surface follows the mesh at {} there", result.loosened,
+            counts.vertices + repairs.bisected, count_text(repairs.flattened, "triangle", "triangles"));
+        if (static_cast<double>(result.loosened) >
             most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
             context.doubt(text);
         else
@@ -487,8 +273,9 @@ void report(const APatchResult& result, Context& context) {
     count("raised", result.raised);
     count("creased-edges", result.repairs.creased);
     count("smoothed-edges", result.repairs.smoothed);
-    count("pointed-vertices", result.repairs.pointed);
-    count("straight-edges", result.repairs.straightened);
+    count("pointed-vertices", result.loosened);
+    count("flat-triangles", result.repairs.flattened);
+    count("straight-edges", result.repairs.opened);
     if (result.fit) {
         context.metric("fit-rms", result.fit->rms, Unit::length);
         context.metric("fit-p95", result.fit->p95, Unit::length);
@@ -522,16 +309,14 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     work.normals = corner_normals(with_columns, points, params, context);
     context.progress(0.2);
 
-    Construction construction(work, params, context);
-    if (points && points->size() > 0 && params.fit && params.normals == APatchParams::Normals::automatic) {
-        replace_opposing(work, construction.repairs);
+    Construction construction(work, {params.apex_factor, params.split, params.curvature}, context);
+    construction.prepare();
+    if (points && points->size() > 0 && params.fit && params.normals == APatchParams::Normals::automatic)
         fit_normals(work, points->positions.span(), context);
-    }
-    level_normals(work);
     construction.run();
     const Hull& hull = construction.hull;
     result.repairs = construction.repairs;
-    assert(hull.faults.thin.empty() && std::ranges::none_of(hull.edges, &HullEdge::is_open));
+    assert(hull.faults.inverted.empty());
     context.progress(0.5);
     Weights weights = fit_and_measure(construction, points, params, result, context);
     result.raised = weights.raised;
@@ -540,15 +325,23 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     result.patches.frame = mesh.frame;
     context.progress(0.9);
     result.inverted = inverted_tets(result.patches);
-    result.sign_violations = sign_violations(result.patches, context);
+    result.sign_violations = sign_violations(result.patches, construction.verdicts, context);
     result.c1_jump = c1_jump(result.patches, context);
-    result.pointed = std::move(work.pointed);
+    result.flat = std::move(work.flat);
+    result.flat.resize(work.mesh.triangles.size(), false);
+    std::vector<bool> is_loosened(work.mesh.positions.size(), false);
+    for (std::size_t f = 0; f < result.flat.size(); ++f)
+        if (result.flat[f])
+            for (const u32 v : work.mesh.triangles[f]) is_loosened[v] = true;
+    for (u32 e = 0; e < hull.edges.size(); ++e)
+        if (hull.is_open_within_smooth(e)) is_loosened[hull.edges[e].a] = is_loosened[hull.edges[e].b] = true;
+    result.loosened = static_cast<std::size_t>(std::ranges::count(is_loosened, true));
     result.mesh = std::move(work.mesh);
     Array<double> components;
     for (const auto& of_triangle : work.normals)
         for (const Vec3& n : of_triangle) components.insert(components.end(), n.data(), n.data() + 3);
     result.mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(components))));
-    result.crease_max = largest_bulge(result.patches, result.mesh, context);
+    result.crease_max = largest_bulge(result.patches, segments_for_bulge, context);
     warn_about(result, construction.crossing, mesh, points, counts, params, context);
     report(result, context);
     return result;

@@ -48,8 +48,10 @@ struct APatchResult {
     TriangleMesh mesh;
     a_patches::Repairs repairs;
     std::size_t divided = 0;  ///< number of triangles with three tetrahedra per side
-    /// By vertex of `mesh`: whether the surface has a tip there; false for vertices beyond the end of the vector.
-    std::vector<bool> pointed;
+    /// By triangle of `mesh`: whether the surface is the triangle, because no smooth surface fits there.
+    std::vector<bool> flat;
+    /// Number of vertices of flat triangles, and of ends of open edges that were not sharp.
+    std::size_t loosened = 0;
     std::size_t raised = 0;  ///< see Weights::raised
     std::size_t inverted = 0;  ///< number of tetrahedra that are inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, relative to the longer
@@ -79,24 +81,10 @@ struct APatchResult {
 /// own. If `corner-normals` is zero at a vertex, and one direction suits all its triangles, the surface has a singular
 /// point there, such as the apex of a cone.
 ///
-/// The filter repairs the mesh where no such surface fits, in this order:
-/// 1. A normal more than 84 degrees from that of one of its triangles is replaced by the normal of the mesh, or by the
-///    direction nearest to the normals of all its triangles. If no direction suits, the most acute edges become sharp.
-/// 2. Normals become the nearest direction, too, where tetrahedra are inside out, or where an apex does not fit below
-/// 0.45 of
-///    the distance to the next sheet. Then the longest edges of the triangles there are bisected, in up to 7 rounds.
-///    The bisections are undone unless they repair at least half of these triangles.
-/// 3. If a crease leaves the tetrahedra beside its edge, the edge is bisected, in up to two rounds. The bisections are
-///    undone unless they repair at least half of these edges. Then the normals at the edges' ends are turned along the
-///    edges. Then a sharp edge becomes smooth if its triangles' normals differ by less than 30 degrees, or if at both
-///    ends the normals on its two sides differ by less than that.
-/// 4. Where that does not help, the gradient at a vertex becomes 0: the surface has a tip there. If a crease between a
-///    tip and another vertex leaves its tetrahedra, its edge is bisected, and the crease becomes straight from the tip
-///    to the middle of the edge.
-/// 5. Where tips do not help, the edges between such vertices become sharp and straight: the surface follows the mesh.
-///    The same happens where a tessellation of a surface with tips intersects itself.
-///
-/// If a fit makes a surface with tips intersect itself, the fit is undone there.
+/// Sharp edges whose sides agree become smooth: the normals on both sides differ by less than 30 degrees, and the edge
+/// is not within a line of other sharp edges. A normal more than 73 degrees from that of one of its triangles is turned
+/// towards it; if no direction is within 84 degrees of all of them, the most acute edges become sharp. Then two rules
+/// repair places where no surface fits; see Construction.
 ///
 /// Pre:  a consistently oriented manifold, closed or open, of any number of components. Coordinates are finite, every
 ///       triangle has an area, and no two boundary edges are at one position. `points`, if not null, are finite and in
@@ -106,13 +94,13 @@ struct APatchResult {
 ///       - `sign_violations` is not 0.
 ///       - The points are farther from the surface than from the mesh (rms), or more than half of them are left out.
 ///       - The surface intersects itself, because the mesh does.
-///       - More than a tenth of the vertices have tips.
+///       - The surface follows the mesh at more than a tenth of the vertices.
 ///       - The mesh is closed and inside out.
 /// Ties: among equally long edges, the one with the lower vertices is bisected first. Among equally acute edges, the
 /// one with the lower vertices becomes sharp. Bytes depend neither on the number of threads nor on the processor.
-/// Cost: linear. One thread takes 15 to 35 us and 4 kB per triangle. To locate and measure the points takes 5 us
-/// per point. A fit adds 3 us per point, and 120 us and 6 kB per triangle; with noise and few points per triangle it
-/// adds 540 us per triangle. If vertices get tips, the search for intersections adds up to 1 ms per triangle.
+/// Cost: linear. One thread takes 15 to 35 us and 4 kB per triangle; with creases that do not fit, up to 400 us per
+/// triangle. To locate and measure the points takes 5 us per point. A fit adds 3 us per point, and 120 us and 6 kB per
+/// triangle; with noise and few points per triangle it adds 540 us per triangle.
 /// Metrics: see plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);
 

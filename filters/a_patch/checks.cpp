@@ -9,7 +9,6 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/patches/a_patch.hpp"
-#include "scanmill/geometry/spatial/triangle_distance.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill::a_patches {
@@ -187,6 +186,48 @@ Barycentric coordinates_on(const std::array<u32, 4>& tet, const std::array<u32, 
     return at;
 }
 
+/// The tetrahedra over some triangles, and between them. These triangles, which ascend, are numbered from 0 in the
+/// part.
+PatchComplex part_over(const PatchComplex& patches, const Hull& hull, std::span<const u32> wanted) {
+    std::vector<bool> is_wanted(hull.faces.size(), false);
+    std::vector<u32> number_of_triangle(hull.faces.size(), 0);
+    for (u32 i = 0; i < wanted.size(); ++i) {
+        is_wanted[wanted[i]] = true;
+        number_of_triangle[wanted[i]] = i;
+    }
+    std::vector<u32> rows, numbers(patches.tets.size(), PatchComplex::no_partner);
+    for (u32 row = 0; row < patches.tets.size(); ++row) {
+        if (!is_wanted[patches.triangles[row]]) continue;
+        if (patches.edges[row] != PatchComplex::no_edge) {
+            const HullEdge& edge = hull.edges[patches.edges[row]];
+            if (!is_wanted[edge.first] || !is_wanted[edge.second]) continue;
+        }
+        numbers[row] = static_cast<u32>(rows.size());
+        rows.push_back(row);
+    }
+    PatchComplex part;
+    part.frame = patches.frame;
+    part.positions = patches.positions;
+    part.tets = gather(patches.tets, rows);
+    part.weights = gather(patches.weights, rows);
+    part.kinds = gather(patches.kinds, rows);
+    part.sides = gather(patches.sides, rows);
+    Array<u32> triangles;
+    for (const u32 row : rows) triangles.push_back(number_of_triangle[patches.triangles[row]]);
+    part.triangles = std::move(triangles);
+    part.edges = gather(patches.edges, rows);
+    Array<u32> partners;
+    Array<Combine> combine;
+    for (const u32 row : rows) {
+        const u32 partner = patches.partners[row];
+        partners.push_back(partner == PatchComplex::no_partner ? partner : numbers[partner]);
+        combine.push_back(partners.back() == PatchComplex::no_partner ? Combine::none : patches.combine[row]);
+    }
+    part.partners = std::move(partners);
+    part.combine = std::move(combine);
+    return part;
+}
+
 }  // namespace
 
 std::size_t inverted_tets(const PatchComplex& patches) {
@@ -206,25 +247,49 @@ std::size_t inverted_tets(const PatchComplex& patches) {
     return inverted;
 }
 
-std::vector<u32> doubtful_edges(const PatchComplex& patches, Execution& execution) {
+std::vector<u32> CreaseVerdicts::doubtful_edges(const PatchComplex& patches, Execution& execution) {
+    // The rows beside an edge follow each other.
+    std::vector<u32> first_rows;
+    const auto edge_of = [&](std::size_t row) { return patches.edges[row]; };
+    for (u32 row = 0; row < patches.tets.size(); ++row)
+        if (edge_of(row) != PatchComplex::no_edge && (row == 0 || edge_of(row - 1) != edge_of(row)))
+            first_rows.push_back(row);
     const CreaseCheck check(patches);
-    std::vector<u8> is_doubtful(patches.tets.size());
-    for_each_chunk(execution.threads(), is_doubtful.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<Verdict> found(first_rows.size());
+    for_each_chunk(execution.threads(), first_rows.size(), chunk, [&](std::size_t begin, std::size_t end) {
         execution.check_cancelled();
-        for (std::size_t row = begin; row < end; ++row)
-            is_doubtful[row] = patches.edges[row] != PatchComplex::no_edge &&
-                               (wrong_signs(patches, row) > 0 || !check.is_sound(static_cast<u32>(row)));
+        for (std::size_t i = begin; i < end; ++i) {
+            Verdict& verdict = found[i];
+            const u32 first = first_rows[i];
+            u32 last = first;
+            verdict.is_sound = true;
+            for (; last < patches.tets.size() && edge_of(last) == edge_of(first); ++last) {
+                verdict.is_sound = verdict.is_sound && wrong_signs(patches, last) == 0;
+                if (patches.partners[last] == PatchComplex::no_partner) continue;
+                verdict.weights.push_back(patches.weights[last]);
+                verdict.weights.push_back(patches.weights[patches.partners[last]]);
+            }
+            if (!verdict.is_sound || verdict.weights.empty()) continue;
+            const auto known = known_.find(make_edge(patches.tets[first][1], patches.tets[first][2]));
+            if (known != known_.end() && known->second.weights == verdict.weights) {
+                verdict.is_sound = known->second.is_sound;
+                continue;
+            }
+            for (u32 row = first; row < last && verdict.is_sound; ++row) verdict.is_sound = check.is_sound(row);
+        }
     });
     std::vector<u32> edges;
-    for (std::size_t row = 0; row < is_doubtful.size(); ++row)
-        if (is_doubtful[row]) edges.push_back(patches.edges[row]);
-    std::ranges::sort(edges);
-    edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const u32 first = first_rows[i];
+        if (!found[i].is_sound) edges.push_back(edge_of(first));
+        if (found[i].weights.empty()) continue;
+        known_.insert_or_assign(make_edge(patches.tets[first][1], patches.tets[first][2]), std::move(found[i]));
+    }
     return edges;
 }
 
-std::size_t sign_violations(const PatchComplex& patches, Execution& execution) {
-    std::size_t violations = doubtful_edges(patches, execution).size();
+std::size_t sign_violations(const PatchComplex& patches, CreaseVerdicts& verdicts, Execution& execution) {
+    std::size_t violations = verdicts.doubtful_edges(patches, execution).size();
     for (std::size_t row = 0; row < patches.tets.size(); ++row)
         if (patches.kinds[row] == PatchKind::face) violations += wrong_signs(patches, row);
     return violations;
@@ -264,45 +329,37 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
     return std::ranges::max(largest);
 }
 
-std::vector<u32> crossing_triangles(const PatchComplex& patches, Execution& execution) {
+std::vector<std::array<u32, 2>> crossing_triangles(const PatchComplex& patches, const Hull& hull,
+                                                   std::span<const u32> suspects, std::span<const u32> beside_creases,
+                                                   Execution& execution) {
+    if (suspects.empty() && beside_creases.empty()) return {};
+    const TriangleTree mesh(hull.positions, hull.triangles, execution.threads());
+    Array<u32> near(beside_creases.begin(), beside_creases.end());
+    for (const u32 f : suspects) {
+        BoundingBox box;
+        for (const u32 v : hull.triangles[f]) box.add(hull.positions[v]);
+        for (const Side side : both_sides) box.add(hull.apex(f, side));
+        mesh.meeting(box, near);
+    }
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
     TessellateParams params;
     params.subdivision = 4;
-    const TriangleMesh surface = tessellate(patches, params, execution);
+    const TriangleMesh surface = tessellate(part_over(patches, hull, near), params, execution);
     const TriangleTree tree(surface.positions.span(), surface.triangles.span(), execution.threads());
     const SelfIntersections found =
         self_intersections(surface.positions.span(), surface.triangles.span(), tree, execution);
     const Column& patch = *surface.face_columns.find("patch");
-    std::vector<u32> triangles;
-    for (const auto& pair : found.pairs)
-        for (const u32 row : pair) triangles.push_back(static_cast<u32>(patch.number(row, 0)));
-    std::ranges::sort(triangles);
-    triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
-    return triangles;
-}
-
-double largest_bulge(const PatchComplex& patches, const TriangleMesh& mesh, Execution& execution) {
-    const std::span sharp = mesh.sharp_edges.span();
-    if (sharp.empty()) return 0;
-    TessellateParams params;
-    params.segments = [&](Edge edge) { return std::ranges::binary_search(sharp, edge) ? 8u : 1u; };
-    const TriangleMesh surface = tessellate(patches, params, execution);
-    const Column& patch = *surface.face_columns.find("patch");
-    double largest = 0;
-    for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const u32 v = surface.triangles[f][i], next = surface.triangles[f][(i + 1) % 3];
-            if (!std::ranges::binary_search(surface.sharp_edges, make_edge(v, next))) continue;
-            const Triangle& t = mesh.triangles[static_cast<std::size_t>(patch.number(f, 0))];
-            double nearest = std::numeric_limits<double>::infinity();
-            for (std::size_t k = 0; k < 3; ++k) {
-                const u32 a = t[k], b = t[(k + 1) % 3];
-                if (!std::ranges::binary_search(sharp, make_edge(a, b))) continue;
-                const Vec3& at = surface.positions[v];
-                nearest = std::min(nearest, (nearest_on_segment(at, mesh.positions[a], mesh.positions[b]) - at).norm());
-            }
-            if (std::isfinite(nearest)) largest = std::max(largest, nearest);
-        }
-    return largest;
+    std::vector<std::array<u32, 2>> crossing;
+    for (const auto& pair : found.pairs) {
+        std::array<u32, 2> triangles;
+        for (std::size_t i = 0; i < 2; ++i) triangles[i] = near[static_cast<u32>(patch.number(pair[i], 0))];
+        std::ranges::sort(triangles);
+        crossing.push_back(triangles);
+    }
+    std::ranges::sort(crossing);
+    crossing.erase(std::ranges::unique(crossing).begin(), crossing.end());
+    return crossing;
 }
 
 }  // namespace scanmill::a_patches

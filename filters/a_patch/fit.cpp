@@ -119,13 +119,13 @@ std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
 class Fitter {
 public:
     Fitter(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
-           const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution)
+           const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles, Execution& execution)
         : hull_(hull),
           weights_(std::move(weights)),
           points_(points.points),
           curvature_(curvature),
           params_(params),
-          violating_edges_(violating_edges),
+          violating_triangles_(violating_triangles),
           execution_(execution),
           free_(free_directions(hull)),
           system_(hull.edges.size(), pairs_of(hull)) {}
@@ -377,9 +377,8 @@ private:
             const SlopeDependence dependence(hull_, free_, weights_.patches, row);
             for (std::size_t n = 0; n < dependence.count(); ++n) add(dependence.edge(n));
         }
-        for (const u32 sharp : violating_edges_(weights_.patches))
-            for (const u32 f : {hull_.edges[sharp].first, hull_.edges[sharp].second})
-                for (const u32 e : hull_.faces[f].edges) add(e);
+        for (const u32 f : violating_triangles_(weights_.patches))
+            for (const u32 e : hull_.faces[f].edges) add(e);
         return is_wrong;
     }
 
@@ -401,7 +400,7 @@ private:
     FitParams params_;
     std::vector<double> regularisation_;  ///< by edge
     double scale_ = 1;
-    const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges_;
+    const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles_;
     Execution& execution_;
     std::vector<Directions> free_;
     BlockSystem system_;
@@ -441,8 +440,8 @@ LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, 
 }
 
 FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
-              const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution) {
-    return Fitter(hull, std::move(weights), points, curvature, params, violating_edges, execution).fitted();
+              const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles, Execution& execution) {
+    return Fitter(hull, std::move(weights), points, curvature, params, violating_triangles, execution).fitted();
 }
 
 double unfairness(const Hull& hull, Curvature curvature) {

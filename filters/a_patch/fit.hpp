@@ -60,9 +60,9 @@ struct FitResult {
 /// slopes without points near them keep their bits. Bytes do not depend on the number of threads.
 /// Cost: about 1 us per point and 100 us per triangle.
 ///
-/// `violating_edges` returns the sharp edges at which a surface is not sound. Pre: it returns none for `weights`.
+/// `violating_triangles` returns triangles beside which a surface is not sound: the changes of their edges are reduced.
 FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
-              const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution);
+              const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles, Execution& execution);
 
 /// Sum over the smooth inner edges of |slope - g|², without the component along the edge. g is a third of the mean
 /// gradient of the quadrics of the edge's two triangles, at the middle of the edge.

@@ -17,13 +17,18 @@ namespace {
 constexpr double share_of_radius = 0.15;  // share of the inradius that is added to a height
 constexpr double low_factor = 1.05, low_share = 0.02;  // see low()
 constexpr double higher_factor = 1.4, higher_share = 0.05;
+constexpr double most_height = 20;  // in inradii, up to which apexes are raised; tetrahedra beyond lose digits
 constexpr int most_rounds = 12;
+constexpr double flattest_share = 1e-3;  // share of the inradius; gradients in flatter tetrahedra lose many digits
 constexpr double share_of_gap = 0.45;  // share of the distance to the next sheet
 constexpr double least_sine = 0.1;  // between two undivided triangles
 constexpr double most_change = 0.1;  // largest change of an edge's gradient, whose length is 1
 constexpr double most_cosine_of_straight = 1e-12;  // rounding of the cosine between perpendicular edge and normal
 constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
 constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
+constexpr double least_sine_of_crease = 0.1;  // between the normals on its sides, to give the crease a direction
+constexpr double most_of_hermite = 4.0 / 27;  // largest value of a cubic with one end slope of 1 and zeros else
+constexpr double clearance = 1.5;  // distance of the segment between apexes from the edge, as a multiple of the bulge
 constexpr double least_turn = 1e-9;  // normals at a smaller sine count as parallel
 constexpr std::size_t chunk = 256;  // triangles
 // Cosines of the limits of the angle between two apexes, seen along their edge: 4 and 172 degrees.
@@ -74,6 +79,23 @@ bool passes_under(const Hull& hull, const HullEdge& edge, Side side) {
     return false;
 }
 
+/// Largest distance between the chord and the cubic curve that a crease follows, at the side where it lies between the
+/// apexes; see bisect().
+double bulge(const Hull& hull, const HullEdge& edge, Side side) {
+    if (!edge.is_sharp || edge.is_straight || edge.is_convex != (side == outside)) return 0;
+    const Vec3 d = hull.positions[edge.b] - hull.positions[edge.a];
+    const auto off = [&](u32 v) {
+        std::array<Vec3, 2> normals;
+        for (std::size_t of = 0; of < 2; ++of) {
+            const std::size_t f = of == 0 ? edge.first : edge.second;
+            normals[of] = hull.normals[f][static_cast<std::size_t>(std::ranges::find(hull.triangles[f], v) -
+                                                                   hull.triangles[f].begin())];
+        }
+        return off_tangent(d, normals[0], normals[1], true).norm();
+    };
+    return most_of_hermite * (off(edge.a) + off(edge.b));
+}
+
 /// The opening between two apexes across an edge.
 enum class Opening { sound, too_small, too_large };
 
@@ -92,7 +114,8 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
         return is_above ? Opening::too_small : Opening::too_large;
     }
     if (cosine >= cosine_of_4 * length) return Opening::too_small;
-    return cosine <= cosine_of_172 * length || passes_under(hull, edge, side) ? Opening::too_large : Opening::sound;
+    const bool is_low = cosine <= cosine_of_172 * length || sine < clearance * bulge(hull, edge, side) * (u - v).norm();
+    return is_low || passes_under(hull, edge, side) ? Opening::too_large : Opening::sound;
 }
 
 class HullBuilder {
@@ -170,10 +193,9 @@ private:
                                             hull_.normals[other / 3][other % 3]};
         const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
         edge.slopes[1] = default_slope(d, of_second[0], of_second[1]);
-        edge.is_straight = (mesh_.is_pointed(edge.a) && mesh_.is_pointed(edge.b)) ||
-                           std::ranges::all_of(
-                               std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
-                               [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
+        edge.is_straight = std::ranges::all_of(
+            std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
+            [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
         // At a convex edge the normals of the two faces diverge.
         const double turn = d.dot(of_first[0].cross(of_second[0]) + of_first[1].cross(of_second[1])) / d.norm();
         if (std::abs(turn) > least_turn) {
@@ -306,7 +328,8 @@ private:
                         if (!are_adjacent(hull_.triangles[f], hull_.triangles[row]))
                             nearest = std::min(nearest, share_until(face.base, reach, row));
                     if (nearest == 1) continue;
-                    face.limit[side] = std::max(nearest * face.height[side], low_factor * face.least[side]);
+                    face.limit[side] = std::max(nearest * face.height[side],
+                                                low_factor * face.least[side] + flattest_share * face.radius);
                     face.is_thin = face.is_thin || face.limit[side] > nearest * face.height[side];
                     face.height[side] = face.limit[side];
                 }
@@ -336,10 +359,12 @@ private:
             if (hull_.faces[f].is_thin) hull_.faults.thin.push_back(f);
         for (u32 e = 0; e < hull_.edges.size(); ++e) {
             HullEdge& edge = hull_.edges[e];
-            for (const Side side : both_sides) edge.is_filled[side] = hull_.is_sound(edge, side);
-            if (!edge.is_open()) continue;
+            const bool is_open = mesh_.is_open(make_edge(edge.a, edge.b));
+            for (const Side side : both_sides) edge.is_filled[side] = !is_open && hull_.is_sound(edge, side);
+            if (edge.second == HullEdge::none || edge.is_filled_twice()) continue;
             if (edge.is_sharp) edge.is_filled = {false, false};
-            hull_.faults.inverted.push_back(e);
+            // The surfaces beside a straight edge have no gap between them.
+            if (!is_open && !edge.is_straight) hull_.faults.inverted.push_back(e);
         }
     }
 
@@ -370,7 +395,8 @@ private:
     static void change(HullFace& face, Side side, Opening found) {
         double& height = face.height[side];
         if (found == Opening::too_large) {
-            height = std::min(face.limit[side], higher_factor * height + higher_share * face.radius);
+            const double most = std::max(height, most_height * face.radius);
+            height = std::min({face.limit[side], most, higher_factor * height + higher_share * face.radius});
         } else {
             height = std::min(height, (height + low(face, side)) / 2);
         }
@@ -385,6 +411,19 @@ private:
 };
 
 }  // namespace
+
+Vec3 off_tangent(const Vec3& edge, const Vec3& one, const Vec3& other, bool is_sharp) {
+    const Vec3 crease = one.cross(other);
+    if (!is_sharp || crease.norm() < least_sine_of_crease) return edge.dot(one) * one;
+    return edge - crease * (crease.dot(edge) / crease.squaredNorm());
+}
+
+bool Hull::is_open_within_smooth(u32 edge) const {
+    const HullEdge& e = edges[edge];
+    if (e.second == HullEdge::none || e.is_filled_twice()) return false;
+    const std::size_t i = number_in(edge, e.first), j = number_in(edge, e.second);
+    return normals[e.first][i] == normals[e.second][next(j)] && normals[e.first][next(i)] == normals[e.second][j];
+}
 
 bool Hull::is_sound(const HullEdge& edge, Side side) const {
     if (edge.second == HullEdge::none) return true;

@@ -50,7 +50,7 @@ struct HullEdge {
     /// the face's normal at a. The two vectors are equal unless the edge is sharp.
     std::array<Vec3, 2> slopes{Vec3::Zero(), Vec3::Zero()};
     bool is_sharp = false;
-    /// Whether the crease of a sharp edge is the edge itself.
+    /// Whether the crease of a sharp edge is the edge itself: the normals on both sides are perpendicular to it.
     bool is_straight = false;
     /// At a convex sharp edge F is the larger of the two triangles' functions, at a concave one the smaller.
     bool is_convex = true;
@@ -59,10 +59,8 @@ struct HullEdge {
 
     bool is_smooth() const { return second != none && !is_sharp; }
     /// Whether the function of each face continues into the third of the other face at this edge.
-    bool is_continued() const { return is_sharp && !is_straight && is_filled[0] && is_filled[1]; }
-    /// Whether there may be a gap between the surfaces of the two faces. A straight edge needs no tetrahedra to close
-    /// it.
-    bool is_open() const { return second != none && !is_straight && !(is_filled[0] && is_filled[1]); }
+    bool is_continued() const { return is_sharp && !is_straight && is_filled_twice(); }
+    bool is_filled_twice() const { return is_filled[0] && is_filled[1]; }
 };
 
 /// Decides which triangles are divided.
@@ -74,7 +72,7 @@ enum class Split {
 /// Defects of a hull; the indices ascend.
 struct HullFaults {
     std::vector<u32> thin;  ///< triangles too near to the next sheet
-    std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out
+    std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out; not open or straight ones
 };
 
 /// The gradients at the corners of every triangle: unit length, or zero where the surface has a singular point.
@@ -85,12 +83,24 @@ struct PatchMesh {
     TriangleMesh mesh;  ///< with its sharp edges; no columns
     /// Triangles that are connected at a vertex without crossing a sharp edge have equal normals there.
     CornerNormals normals;
-    /// By vertex: whether the gradient is 0 there, so that the surface has a tip. False for vertices beyond the end of
-    /// the vector.
-    std::vector<bool> pointed{};
+    /// Sharp edges without tetrahedra between the apexes of their triangles, because none fit; ascending. The surfaces
+    /// over the two triangles end there, and a narrow straight strip joins them.
+    std::vector<Edge> open{};
+    /// By triangle: whether the surface is the triangle, because no smooth surface fits there. Its three edges are
+    /// open, and its normals are that of the triangle. False for triangles beyond the end of the vector.
+    std::vector<bool> flat{};
 
-    bool is_pointed(u32 vertex) const { return vertex < pointed.size() && pointed[vertex]; }
+    /// The edges whose bisection made the last vertices of the mesh, in their order.
+    std::vector<Edge> bisected{};
+
+    bool is_open(const Edge& edge) const { return std::ranges::binary_search(open, edge); }
+    bool is_flat(std::size_t triangle) const { return triangle < flat.size() && flat[triangle]; }
 };
+
+/// The difference between an edge, from one end to the other, and the tangent at an end of the curve that follows it
+/// (Vlachos et al. 2001, "Curved PN triangles"): the edge is projected to the tangent plane, and at a crease to the
+/// line in which the two tangent planes meet. `one` and `other` are the normals on both sides at this end.
+Vec3 off_tangent(const Vec3& edge, const Vec3& one, const Vec3& other, bool is_sharp);
 
 struct Hull {
     std::span<const Vec3> positions;
@@ -123,6 +133,8 @@ struct Hull {
         const std::array<u32, 3>& all = faces[face].edges;
         return static_cast<std::size_t>(std::ranges::find(all, edge) - all.begin());
     }
+    /// Whether no tetrahedra are beside an edge whose two sides have equal normals.
+    bool is_open_within_smooth(u32 edge) const;
     /// Whether the tetrahedra on a side, between the apexes of the edge's two faces, have the right orientation.
     bool is_sound(const HullEdge& edge, Side side) const;
 };

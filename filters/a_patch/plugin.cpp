@@ -8,7 +8,7 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 6)
+    return Declare<P>("a-patch", 7)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
@@ -70,12 +70,18 @@ SCANMILL_FILTER() {
                 "Edges bisected because tetrahedra were inside out or too large, or a crease left its edge.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
-        .metric("smoothed-edges", Unit::count, "Blunt sharp edges made smooth, because no crease follows them.",
-                smaller_is_better)
+        .metric("smoothed-edges", Unit::count,
+                "Sharp edges made smooth, because the surface has nearly one normal on both sides.", smaller_is_better)
         .metric("pointed-vertices", Unit::count,
-                "Vertices where the surface has a tip, because no smooth surface fits there.", smaller_is_better)
+                "Vertices beside which the surface is not smooth, because none fits: corners of flat triangles, and "
+                "ends of open edges that are not sharp.",
+                smaller_is_better)
+        .metric("flat-triangles", Unit::count, "Triangles that are the surface, because no smooth surface fits there.",
+                smaller_is_better)
         .metric("straight-edges", Unit::count,
-                "Edges made sharp and straight between pointed vertices, because nothing else fits.", smaller_is_better)
+                "Open edges: a narrow straight strip joins the surfaces of the two triangles, because no tetrahedra "
+                "fit between them.",
+                smaller_is_better)
         .metric("raised", Unit::count,
                 "Control coefficients changed so that every line to an apex meets the surface once.")
         .metric("fit-rms", Unit::length, "Root of the mean squared distance of the points from the surface.", headline,

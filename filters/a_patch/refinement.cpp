@@ -12,8 +12,10 @@ namespace scanmill::a_patches {
 
 namespace {
 
-constexpr double least_sine_of_crease = 0.1;  // between the normals on its sides, to give the crease a direction
 constexpr double least_cosine_of_part = 0.5;  // between the normals of a part and of the triangle or new vertex
+constexpr double least_share_of_part = 0.1;  // of the area of the triangle; thinner parts are needles
+constexpr double straight_share = 1e-3;  // weight of an edge's length beside its curving
+constexpr double rounding = 1e-12;  // share of a size up to which two sizes tie
 
 struct LongEdge {
     double squared;
@@ -25,19 +27,29 @@ struct LongEdge {
     }
 };
 
-LongEdge longest_edge(const TriangleMesh& mesh, u32 triangle) {
-    LongEdge longest{-1, {}, 0};
+/// The edge whose ends' normals make the surface deviate most from it; its longest edge if no normal makes it deviate.
+/// Ties: the edge with the lower vertices.
+LongEdge most_curved_edge(const PatchMesh& mesh, u32 triangle) {
+    LongEdge best{0, {}, 0};
+    double greatest = -1;
     for (u32 half = 3 * triangle; half < 3 * triangle + 3; ++half) {
-        const u32 a = half_edges::start(mesh, half), b = half_edges::end(mesh, half);
-        longest =
-            std::min(longest, LongEdge{(mesh.positions[b] - mesh.positions[a]).squaredNorm(), make_edge(a, b), half});
+        const u32 a = half_edges::start(mesh.mesh, half), b = half_edges::end(mesh.mesh, half);
+        const Vec3 d = mesh.mesh.positions[b] - mesh.mesh.positions[a];
+        const auto& normals = mesh.normals[triangle];
+        const double bend = std::max(std::abs(normals[half % 3].dot(d)), std::abs(normals[(half + 1) % 3].dot(d)));
+        const double size = bend + straight_share * d.norm();
+        const LongEdge edge{d.squaredNorm(), make_edge(a, b), half};
+        const bool is_tie = std::abs(size - greatest) <= rounding * greatest;
+        if (is_tie ? !(edge < best) : size < greatest) continue;
+        greatest = size;
+        best = edge;
     }
-    return longest;
+    return best;
 }
 
 /// Bisects the edges, the longest first. Skips an edge if one of its triangles is already cut. Returns the number of
 /// bisected edges.
-std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle position) {
+std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges) {
     TriangleMesh& mesh = patch_mesh.mesh;
     CornerNormals& normals = patch_mesh.normals;
     const Array<u32> opposites = half_edges::opposites(mesh);
@@ -56,49 +68,58 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
         const auto middle = static_cast<u32>(positions.size() - 1);
         const u32 i = half_edges::start(mesh, half), j = half_edges::end(mesh, half),
                   k = half_edges::start(mesh, half_edges::before(half));
-        const Vec3 whole = face_normal(half / 3);
-        for (const Vec3& n : {normal_of(i, middle, k), normal_of(middle, j, k)})
-            if (!(n.dot(whole) >= least_cosine_of_part && n.dot(normal) >= least_cosine_of_part)) return false;
+        const Triangle& t = cut[half / 3];
+        const Vec3 whole = area_vector(positions, t);
+        for (const Triangle& part : {Triangle{i, middle, k}, Triangle{middle, j, k}}) {
+            const Vec3 area = area_vector(positions, part);
+            if (!(area.dot(whole) >= least_share_of_part * whole.squaredNorm())) return false;
+            const Vec3 n = area.normalized();
+            if (!(n.dot(whole.normalized()) >= least_cosine_of_part && n.dot(normal) >= least_cosine_of_part))
+                return false;
+        }
         return true;
+    };
+    std::vector<Edge> open = patch_mesh.open;
+    patch_mesh.flat.resize(cut.size(), false);
+    const auto cut_in_two = [](std::vector<Edge>& list, const Edge& whole, u32 middle) {
+        list.erase(std::ranges::lower_bound(list, whole));
+        for (const u32 end : whole)
+            list.insert(std::ranges::lower_bound(list, make_edge(end, middle)), make_edge(end, middle));
     };
     for (const LongEdge& edge : edges) {
         const u32 half = edge.half_edge, other = opposites[half];
         const bool is_border = other == half_edges::boundary;
         if (is_cut[half / 3] || (!is_border && is_cut[other / 3])) continue;
-        ++bisected;
         const u32 a = half_edges::start(mesh, half), b = half_edges::end(mesh, half);
         const bool is_sharp = !is_border && std::ranges::binary_search(mesh.sharp_edges, edge.ends);
         const Vec3 d = positions[b] - positions[a];
-        const auto middle = static_cast<u32>(positions.size());
         // Normals of the edge, by end and side.
         const std::array<std::array<Vec3, 2>, 2> at{
             {{corner_normal(half), is_border ? corner_normal(half) : corner_normal(half_edges::after(other))},
              {corner_normal(half_edges::after(half)),
               is_border ? corner_normal(half_edges::after(half)) : corner_normal(other)}}};
-        // The difference between d and the tangent at an end.
-        const auto missing = [&](const std::array<Vec3, 2>& n) -> Vec3 {
-            const Vec3 crease = n[0].cross(n[1]);
-            if (!is_sharp || crease.norm() < least_sine_of_crease) return d.dot(n[0]) * n[0];
-            return d - crease * (crease.dot(d) / crease.squaredNorm());
-        };
-        const Vec3 at_a = missing(at[0]), at_b = missing(at[1]), tangent = d + (at_a + at_b) / 4;
+        const Vec3 at_a = off_tangent(d, at[0][0], at[0][1], is_sharp),
+                   at_b = off_tangent(d, at[1][0], at[1][1], is_sharp);
+        if (is_sharp && at_a.dot(at_b) > 0) continue;  // an S, whose halves leave the edge as much
+        const Vec3 tangent = d + (at_a + at_b) / 4;
+        const auto middle = static_cast<u32>(positions.size());
+        ++bisected;
+        patch_mesh.bisected.push_back(edge.ends);
         std::array<Vec3, 2> new_normals;
         for (std::size_t side = 0; side < 2; ++side) {
             const Vec3 sum = at[0][side] + at[1][side];
             new_normals[side] = (sum - tangent * (tangent.dot(sum) / tangent.squaredNorm())).normalized();
         }
         positions.push_back((positions[a] + positions[b]) / 2 + (at_b - at_a) / 8);
-        if (position == Middle::of_segment || !is_sound(half, new_normals[0]) ||
-            (!is_border && !is_sound(other, new_normals[1]))) {
+        if (!is_sound(half, new_normals[0]) || (!is_border && !is_sound(other, new_normals[1]))) {
             positions.back() = (positions[a] + positions[b]) / 2;
             const Vec3 first = face_normal(half / 3), second = is_border ? Vec3(Vec3::Zero()) : face_normal(other / 3);
             new_normals = {is_sharp ? first : (first + second).normalized(),
                            is_sharp ? second : (first + second).normalized()};
         }
         if (is_sharp) {
-            sharp.erase(std::ranges::lower_bound(sharp, edge.ends));
-            for (const u32 end : {a, b})
-                sharp.insert(std::ranges::lower_bound(sharp, make_edge(end, middle)), make_edge(end, middle));
+            cut_in_two(sharp, edge.ends, middle);
+            if (patch_mesh.is_open(edge.ends)) cut_in_two(open, edge.ends, middle);
         }
         for (std::size_t side = 0; side < (is_border ? 1 : 2); ++side) {
             const u32 of_side = side == 0 ? half : other;
@@ -111,12 +132,14 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
             first[j] = second[i] = middle;
             first_normals[j] = second_normals[i] = new_normals[side];
             cut.push_back(second);
+            patch_mesh.flat.push_back(patch_mesh.flat[of_side / 3]);
             normals.push_back(second_normals);
         }
     }
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(cut);
     mesh.sharp_edges = Array<Edge>(sharp.begin(), sharp.end());
+    patch_mesh.open = std::move(open);
     return bisected;
 }
 
@@ -124,11 +147,11 @@ std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges, Middle po
 
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles) {
     std::vector<LongEdge> edges;
-    for (const u32 triangle : triangles) edges.push_back(longest_edge(mesh.mesh, triangle));
-    return bisect(mesh, std::move(edges), Middle::of_curve);
+    for (const u32 triangle : triangles) edges.push_back(most_curved_edge(mesh, triangle));
+    return bisect(mesh, std::move(edges));
 }
 
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle) {
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
     std::vector<Edge> sought(edges.begin(), edges.end());
     std::ranges::sort(sought);
     std::vector<LongEdge> found;
@@ -137,7 +160,7 @@ std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle mi
         if (a < b && std::ranges::binary_search(sought, make_edge(a, b)))
             found.push_back({(mesh.mesh.positions[b] - mesh.mesh.positions[a]).squaredNorm(), make_edge(a, b), half});
     }
-    return bisect(mesh, std::move(found), middle);
+    return bisect(mesh, std::move(found));
 }
 
 }  // namespace scanmill::a_patches

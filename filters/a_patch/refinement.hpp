@@ -13,16 +13,11 @@ namespace scanmill::a_patches {
 /// The new vertex is the middle of a cubic curve through the edge's ends. The curve's tangent at an end is the edge,
 /// projected to the tangent plane (as in Vlachos et al. 2001, "Curved PN triangles"). At a sharp edge it is projected
 /// to the line in which the two tangent planes meet. The new normal is the mean of the ends' normals, made
-/// perpendicular to the curve. If a part of a triangle would turn too far, Middle::of_segment applies instead.
+/// perpendicular to the curve. If a part of a triangle would turn too
+/// far, the vertex is the middle of the edge, with the normals of the triangles.
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 
-/// Position and normals of the vertex that bisects an edge.
-enum class Middle {
-    of_curve,   ///< middle of the cubic that bisect() describes
-    of_segment  ///< middle of the edge; the normals are those of the triangles
-};
-
-/// Bisects edges like bisect(), with new vertices according to `middle`.
-std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges, Middle middle);
+/// Bisects edges like bisect(). Edges that are not in the mesh are skipped.
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges);
 
 }  // namespace scanmill::a_patches

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "a_patch/normals.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/data/half_edges.hpp"
+#include "scanmill/geometry/spatial/lists.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::a_patches {
@@ -18,10 +20,24 @@ constexpr double cosine_of_fold = 0.8660254037844386;  // of 30 degrees
 // the deviation of the normal beyond the edge.
 constexpr double level_sine = 1e-3, level_share = 0.1;
 constexpr double cosine_of_level = 0.9993908270190958;  // of 2 degrees
+// A normal is turned in steps until its cosines with the triangles' normals are large enough.
+constexpr double least_turned_cosine = 0.3, turn_share = 0.15;
+constexpr int most_turns = 60;
 constexpr double least_length = 0.1;  // least length of a sum or product of unit vectors that gives a direction
 
 void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
     for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
+}
+
+/// Turns a normal towards the normals of its triangles, each time towards the one that differs most, until none is more
+/// than 73 degrees from it.
+Vec3 turned_to(Vec3 normal, std::span<const Vec3> around) {
+    for (int turn = 0; turn < most_turns; ++turn) {
+        const auto worst = std::ranges::min_element(around, {}, [&](const Vec3& n) { return n.dot(normal); });
+        if (worst->dot(normal) >= least_turned_cosine) break;
+        normal = (normal + turn_share * *worst).normalized();
+    }
+    return normal;
 }
 
 /// Adds edges to the sharp edges. Returns the number of new ones.
@@ -101,7 +117,15 @@ void replace_opposing(PatchMesh& mesh, Repairs& repairs) {
         for (std::size_t s = 0; s < sectors.size(); ++s) {
             const std::vector<Vec3> around = normals_at(corners[s], of_triangles);
             const Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
-            if (normal == Vec3::Zero() || !opposes(normal, around)) continue;
+            if (normal == Vec3::Zero()) continue;
+            const Vec3 turned = turned_to(normal, around);
+            if (!opposes(turned, around)) {
+                if (turned != normal) {
+                    ++repairs.replaced;
+                    set_normal(mesh, corners[s], turned);
+                }
+                continue;
+            }
             if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh, sectors);
             const Vec3 better = opposes(of_mesh[s], around) ? most_normal(around) : of_mesh[s];
             if (opposes(better, around)) {
@@ -149,119 +173,117 @@ void level_normals(PatchMesh& mesh) {
     mesh.normals = std::move(levelled);
 }
 
-void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs) {
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    const Sectors sectors = sectors_of(mesh.mesh);
-    const std::vector<std::vector<u32>> corners = corners_of(sectors);
-    std::vector<u32> turned;
-    for (const u32 f : triangles) turned.insert(turned.end(), sectors.of_corner[f].begin(), sectors.of_corner[f].end());
-    std::ranges::sort(turned);
-    turned.erase(std::ranges::unique(turned).begin(), turned.end());
-    for (const u32 s : turned) set_normal(mesh, corners[s], most_normal(normals_at(corners[s], of_triangles)));
-    repairs.replaced += turned.size();
-}
-
-void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs) {
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    const Sectors sectors = sectors_of(mesh.mesh);
-    const std::vector<std::vector<u32>> corners = corners_of(sectors);
-    std::vector<int> sharp_at(mesh.mesh.positions.size(), 0);
-    std::vector<bool> is_end(mesh.mesh.positions.size(), false);
-    for (const Edge& edge : mesh.mesh.sharp_edges)
-        for (const u32 v : edge) ++sharp_at[v];
-    for (const Edge& edge : edges)
-        for (const u32 v : edge) is_end[v] = true;
-    for (std::size_t s = 0; s < sectors.size(); ++s) {
-        const u32 v = sectors.vertex[s];
-        Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
-        if (!is_end[v] || normal == Vec3::Zero()) continue;
-        std::vector<u32> others;
-        for (const u32 corner : corners[s])
-            for (const u32 other :
-                 {half_edges::end(mesh.mesh, corner), half_edges::start(mesh.mesh, half_edges::before(corner))})
-                if (std::ranges::binary_search(mesh.mesh.sharp_edges, make_edge(v, other)) &&
-                    std::ranges::find(others, other) == others.end())
-                    others.push_back(other);
-        if (others.empty() || others.size() > 2) continue;
-        const auto direction = [&](std::size_t i) -> Vec3 {
-            return (mesh.mesh.positions[others[i]] - mesh.mesh.positions[v]).normalized();
-        };
-        if (others.size() == 2 && sharp_at[v] > 2) {
-            const Vec3 across = direction(0).cross(direction(1));
-            if (across.norm() < least_length) continue;
-            normal = across.dot(normal) < 0 ? Vec3(-across.normalized()) : Vec3(across.normalized());
-        } else {
-            const Vec3 along = others.size() == 1 ? direction(0) : Vec3(direction(0) - direction(1));
-            if (!(along.norm() > least_length)) continue;
-            normal = (normal - along * (along.dot(normal) / along.squaredNorm())).normalized();
-        }
-        if (opposes(normal, normals_at(corners[s], of_triangles))) continue;
-        set_normal(mesh, corners[s], normal);
-        ++repairs.replaced;
-    }
-}
-
-std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs) {
-    std::vector<Edge> sought(edges.begin(), edges.end());
-    std::ranges::sort(sought);
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+void smooth_agreeing_edges(PatchMesh& mesh, Repairs& repairs) {
     const Array<u32> opposites = half_edges::opposites(mesh.mesh);
-    std::vector<Edge> blunt;
+    const auto normal = [&](u32 corner) -> const Vec3& { return mesh.normals[corner / 3][corner % 3]; };
+    const auto agree = [&](const Vec3& one, const Vec3& other) {
+        return one == Vec3::Zero() || other == Vec3::Zero() || one.dot(other) >= cosine_of_fold;
+    };
+    const std::span sharp = mesh.mesh.sharp_edges.span();
+    std::vector<bool> may_end(sharp.size(), false), is_smooth(sharp.size(), false);
     for (u32 half = 0; half < opposites.size(); ++half) {
-        if (opposites[half] == half_edges::boundary || opposites[half] < half) continue;
-        const Edge edge = make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half));
-        if (!std::ranges::binary_search(sought, edge)) continue;
         const u32 other = opposites[half];
-        const auto normal = [&](u32 corner) -> const Vec3& { return mesh.normals[corner / 3][corner % 3]; };
-        // At the last edge of a chain of creases, the normals differ at one end only.
-        const bool is_crease = normal(half).dot(normal(half_edges::after(other))) < cosine_of_fold ||
-                               normal(half_edges::after(half)).dot(normal(other)) < cosine_of_fold;
-        if (!is_crease || of_triangles[half / 3].dot(of_triangles[other / 3]) > cosine_of_fold) blunt.push_back(edge);
+        if (other == half_edges::boundary || other < half) continue;
+        const Edge edge = make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half));
+        const auto found = std::ranges::lower_bound(sharp, edge);
+        if (found == sharp.end() || *found != edge) continue;
+        may_end[static_cast<std::size_t>(found - sharp.begin())] =
+            agree(normal(half), normal(half_edges::after(other))) &&
+            agree(normal(half_edges::after(half)), normal(other));
     }
-    if (blunt.empty()) return 0;
-    std::ranges::sort(blunt);
-    std::vector<bool> is_end(mesh.mesh.positions.size(), false);
-    for (const Edge& edge : blunt)
-        for (const u32 v : edge) is_end[v] = true;
-    Array<Edge> sharp;
-    std::ranges::set_difference(mesh.mesh.sharp_edges, blunt, std::back_inserter(sharp));
-    mesh.mesh.sharp_edges = std::move(sharp);
+    // Lines lose agreeing edges from their free ends on. What is left of a part without other edges is smooth, too.
+    const Lists<> edges_at(mesh.mesh.positions.size(), [&](auto&& add) {
+        for (u32 e = 0; e < sharp.size(); ++e)
+            for (const u32 v : sharp[e]) add(v, e);
+    });
+    DisjointSets parts(sharp.size());
+    std::vector<u32> count(mesh.mesh.positions.size()), ends;
+    for (u32 v = 0; v < count.size(); ++v) {
+        count[v] = static_cast<u32>(edges_at[v].size());
+        if (count[v] == 1) ends.push_back(v);
+        for (const u32 e : edges_at[v]) parts.unite(edges_at[v][0], e);
+    }
+    while (!ends.empty()) {
+        const u32 v = ends.back();
+        ends.pop_back();
+        for (const u32 e : edges_at[v]) {
+            if (is_smooth[e] || !may_end[e] || count[v] != 1) continue;
+            is_smooth[e] = true;
+            for (const u32 end : sharp[e])
+                if (--count[end] == 1) ends.push_back(end);
+        }
+    }
+    std::vector<bool> has_crease(sharp.size(), false);
+    for (u32 e = 0; e < sharp.size(); ++e)
+        if (!may_end[e]) has_crease[parts.find(e)] = true;
+    std::vector<bool> is_changed(mesh.mesh.positions.size(), false);
+    Array<Edge> left;
+    for (u32 e = 0; e < sharp.size(); ++e) {
+        if (has_crease[parts.find(e)] && !is_smooth[e]) {
+            left.push_back(sharp[e]);
+            continue;
+        }
+        ++repairs.smoothed;
+        for (const u32 v : sharp[e]) is_changed[v] = true;
+    }
+    if (left.size() == sharp.size()) return;
+    mesh.mesh.sharp_edges = std::move(left);
     const Sectors sectors = sectors_of(mesh.mesh);
     const std::vector<std::vector<u32>> corners = corners_of(sectors);
     for (std::size_t s = 0; s < sectors.size(); ++s) {
-        if (!is_end[sectors.vertex[s]]) continue;
+        if (!is_changed[sectors.vertex[s]]) continue;
         Vec3 sum = Vec3::Zero();
-        for (const u32 corner : corners[s]) sum += mesh.normals[corner / 3][corner % 3];
-        set_normal(mesh, corners[s], sum.norm() > least_length ? Vec3(sum.normalized()) : sum);
+        for (const u32 corner : corners[s]) sum += normal(corner);
+        // Equal normals stay as they are, bit for bit.
+        const bool are_equal =
+            std::ranges::all_of(corners[s], [&](u32 c) { return normal(c) == normal(corners[s][0]); });
+        if (!are_equal) set_normal(mesh, corners[s], sum.normalized());
     }
-    repairs.smoothed += blunt.size();
-    return blunt.size();
 }
 
-bool loosen(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs) {
-    std::vector<bool>& pointed = mesh.pointed;
-    pointed.resize(mesh.mesh.positions.size(), false);
-    const std::vector<bool> before = pointed;
-    std::vector<Edge> straight;
-    for (const Edge& edge : edges) {
-        if (before[edge[0]] && before[edge[1]]) straight.push_back(edge);
-        for (const u32 v : edge) pointed[v] = true;
+bool move_back(PatchMesh& mesh, u32 triangle) {
+    const std::size_t first_new = mesh.mesh.positions.size() - mesh.bisected.size();
+    std::vector<u32> sought;
+    for (const u32 v : mesh.mesh.triangles[triangle]) sought.push_back(v);
+    for (std::size_t i = 0; i < sought.size(); ++i)
+        if (sought[i] >= first_new)
+            for (const u32 end : mesh.bisected[sought[i] - first_new]) sought.push_back(end);
+    // An edge is older than the vertex in its middle.
+    std::ranges::sort(sought);
+    Array<Vec3> positions(mesh.mesh.positions.begin(), mesh.mesh.positions.end());
+    bool has_moved = false;
+    for (const u32 v : sought) {
+        if (v < first_new) continue;
+        const auto& [a, b] = mesh.bisected[v - first_new];
+        const Vec3 middle = (positions[a] + positions[b]) / 2;
+        has_moved = has_moved || positions[v] != middle;
+        positions[v] = middle;
     }
+    if (!has_moved) return false;
+    mesh.mesh.positions = std::move(positions);
+    for (u32 f = 0; f < mesh.flat.size(); ++f)
+        if (mesh.flat[f]) mesh.normals[f].fill(area_vector(mesh.mesh.positions, mesh.mesh.triangles[f]).normalized());
+    return true;
+}
+
+void follow_mesh(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs) {
+    std::vector<Edge> opened(edges.begin(), edges.end());
+    repairs.opened += edges.size();
+    mesh.flat.resize(mesh.mesh.triangles.size(), false);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
     for (const u32 f : triangles) {
-        const Triangle& t = mesh.mesh.triangles[f];
-        const bool is_pointed = std::ranges::all_of(t, [&](u32 v) { return before[v]; });
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (is_pointed) straight.push_back(make_edge(t[i], t[(i + 1) % 3]));
-            pointed[t[i]] = true;
-        }
+        if (mesh.flat[f]) continue;
+        mesh.flat[f] = true;
+        ++repairs.flattened;
+        mesh.normals[f].fill(area_vector(mesh.mesh.positions, mesh.mesh.triangles[f]).normalized());
+        for (u32 half = 3 * f; half < 3 * f + 3; ++half)
+            if (opposites[half] != half_edges::boundary)
+                opened.push_back(make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half)));
     }
-    for (std::size_t f = 0; f < mesh.mesh.triangles.size(); ++f)
-        for (std::size_t i = 0; i < 3; ++i)
-            if (pointed[mesh.mesh.triangles[f][i]]) mesh.normals[f][i] = Vec3::Zero();
-    const std::size_t added = add_sharp(mesh.mesh, std::move(straight));
-    repairs.straightened += added;
-    repairs.pointed = static_cast<std::size_t>(std::ranges::count(pointed, true));
-    return added > 0 || pointed != before;
+    add_sharp(mesh.mesh, opened);
+    mesh.open.insert(mesh.open.end(), opened.begin(), opened.end());
+    std::ranges::sort(mesh.open);
+    mesh.open.erase(std::ranges::unique(mesh.open).begin(), mesh.open.end());
 }
 
 }  // namespace scanmill::a_patches

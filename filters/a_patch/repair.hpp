@@ -11,8 +11,8 @@ struct Repairs {
     std::size_t bisected = 0;  ///< number of edges bisected
     std::size_t creased = 0;   ///< number of edges made sharp
     std::size_t smoothed = 0;  ///< number of sharp edges made smooth
-    std::size_t pointed = 0;  ///< number of vertices with a tip
-    std::size_t straightened = 0;  ///< number of edges made sharp and straight
+    std::size_t opened = 0;  ///< number of edges made open, except those of flat triangles
+    std::size_t flattened = 0;  ///< number of triangles made flat
 };
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
@@ -23,9 +23,9 @@ std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3>
 /// Whether the direction is more than 84 degrees from one of the normals.
 bool opposes(const Vec3& direction, std::span<const Vec3> normals);
 
-/// Replaces each normal that opposes a triangle by the normal of the mesh, or by the direction nearest to the normals
-/// of all triangles of the sector. Where no direction suits all of them, the sector's most acute edges become sharp
-/// until one does (ties: by their vertices).
+/// Turns each normal more than 73 degrees from that of a triangle towards it. If it still opposes a triangle, the
+/// normal of the mesh replaces it, or the direction nearest to the normals of all triangles of the sector. Where no
+/// direction suits all of them, the sector's most acute edges become sharp until one does (ties: by their vertices).
 void replace_opposing(PatchMesh& mesh, Repairs& repairs);
 
 /// Makes a sector's normal perpendicular to the one or two sharp edges at its sides if a turn of at most 2 degrees
@@ -34,24 +34,16 @@ void replace_opposing(PatchMesh& mesh, Repairs& repairs);
 /// straight line. Without this, rounding would make the plane cross the chord of the curve.
 void level_normals(PatchMesh& mesh);
 
-/// Sets each normal at the triangles' corners to the direction nearest to the normals of all triangles of its sector.
-void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs);
+/// Makes sharp edges smooth whose sides agree: the normals on the two sides differ by less than 30 degrees at both
+/// ends. Such an edge stays within a line of sharp edges that continues to edges whose sides do not agree. The vertices
+/// get the mean of the normals.
+void smooth_agreeing_edges(PatchMesh& mesh, Repairs& repairs);
 
-/// Turns the normals at the ends of these sharp edges so that creases follow the edges. If a sector has one sharp edge,
-/// its normal becomes perpendicular to that edge. If it has two, its normal becomes perpendicular to the chain of the
-/// two edges, or, at a corner with more sharp edges, to each of the two. A normal stays if a triangle opposes the new
-/// one.
-void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
+/// Moves vertices of a triangle that bisection has put beside an edge to the middle of the edge, so that the triangle
+/// lies in the mesh as it was. Returns whether one has moved.
+bool move_back(PatchMesh& mesh, u32 triangle);
 
-/// Makes a sharp edge smooth if the normals of its triangles differ by less than 30 degrees, or if at both ends the
-/// normals on its two sides differ by less than that. The ends get the mean of the normals. Returns the number of edges
-/// made smooth.
-std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
-
-/// Makes the ends of the edges and the corners of the triangles pointed. If all of these vertices are pointed already,
-/// the edge, or the sides of the triangle, become sharp. The surface then follows the mesh, because a sharp edge
-/// between pointed vertices is straight, and a triangle with three such edges is flat. Returns whether something has
-/// changed.
-bool loosen(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs);
+/// Makes the surface follow the mesh: the edges become sharp and open, and the triangles flat.
+void follow_mesh(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs);
 
 }  // namespace scanmill::a_patches

@@ -11,7 +11,7 @@ struct PatchDistanceParams {};
 }  // namespace
 
 SCANMILL_FILTER() {
-    return Declare<PatchDistanceParams>("patch-distance", 4)
+    return Declare<PatchDistanceParams>("patch-distance", 5)
         .summary("Signed distance of points to the surface of A-patches.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(

@@ -52,13 +52,14 @@ u8 TetFunctions::side_at(const Barycentric& base, double zero) const {
 TetFunctions::Hit TetFunctions::hit(u8 side, const Barycentric& base, const Barycentric& to, double zero) const {
     const double sign = side == 1 ? 1 : -1;
     double t = change_to(sign, patch_along(own_.weights(), base, to), zero);
-    bool is_other = false;
+    double lead = 0;
     if (other_) {
         const double there = change_to(sign, patch_along(other_->weights(), in_other(base), in_other(to)), zero);
         // The larger function is positive where one function is positive, and negative where both are.
-        is_other = (combine_ == Combine::max) == (side == 1) ? there < t : there > t;
-        if (is_other) t = there;
+        if (there != t) lead = (combine_ == Combine::max) == (side == 1) ? there - t : t - there;
+        if (lead < 0) t = there;
     }
+    const bool is_other = lead < 0;
     const bool is_missed = t == never;
     if (is_missed && !other_)
         throw Error("the patches have no surface on a line from the mesh to an apex")
@@ -66,7 +67,7 @@ TetFunctions::Hit TetFunctions::hit(u8 side, const Barycentric& base, const Bary
     if (is_missed) t = 1;
     const Barycentric at = (1 - t) * base + t * to;
     const Vec3 gradient = is_other ? other_->gradient(in_other(at)) : own_.gradient(at);
-    return {{own_.point(at), gradient.normalized(), t == 0 ? u8(1) : side}, t == 0, is_other, is_missed};
+    return {{own_.point(at), gradient.normalized(), t == 0 ? u8(1) : side}, t == 0, is_other, lead, is_missed};
 }
 
 }  // namespace scanmill::tessellation

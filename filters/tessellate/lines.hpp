@@ -34,6 +34,9 @@ public:
         SurfacePoint point;
         bool is_at_base;
         bool is_other;  ///< the partner's function holds there
+        /// Of two functions: the difference of the shares of the line at which they meet the surface. It is negative if
+        /// the partner's holds, and may be infinite.
+        double lead;
         bool is_missed;  ///< neither of two functions has a surface on the line; the point is its end
     };
     /// Returns the point of the surface on the line from `base`, a point of the mesh, to `to`, a point on the side

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = TessellateParams;
-    return Declare<P>("tessellate", 4)
+    return Declare<P>("tessellate", 5)
         .summary("Triangles on the surface of A-patches: watertight, with exact normals and creases.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tessellate/strip.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -138,23 +139,91 @@ private:
         }
     }
 
-    /// Closes the gap with a straight line between the points on the two faces, in one segment after the middle column.
+    /// Closes a gap without tetrahedra between the points on the two faces, in two segments that meet in the middle
+    /// column: in a crease, like a mitre joint, if there is one between the lines to the two apexes. Else in one
+    /// straight segment, or, if that would pass over the triangles, in two segments over the edge: if the points are on
+    /// different sides of the mesh, or the two apexes on their side lie beyond each other.
     void lift_open(Strip& strip, Sample& sample) const {
         sample.is_open = true;
+        const std::array bases{on_edge(0, sample.share[0]), on_edge(1, sample.share[0])};
+        const std::array<bool, 2> are_bases{is_zero(0, bases[0]), is_zero(1, bases[1])};
         std::array<SurfacePoint, 2> points;
-        for (std::size_t of = 0; of < 2; ++of) {
-            const Barycentric base = on_edge(of, sample.share[0]);
-            const u8 side = thirds_[of][1]->side_at(base, zero_);
-            points[of] = thirds_[of][side]->hit(side, base, apex(), zero_).point;
-        }
+        std::array<u8, 2> sides;
+        for (std::size_t of = 0; of < 2; ++of) sides[of] = thirds_[of][1]->side_at(bases[of], zero_);
+        // A point on the mesh is on either side.
+        for (std::size_t of = 0; of < 2; ++of)
+            if (are_bases[of]) sides[of] = sides[1 - of];
+        for (std::size_t of = 0; of < 2; ++of)
+            points[of] = thirds_[of][sides[of]]->hit(sides[of], bases[of], apex(), zero_).point;
         const bool are_one = (points[0].position - points[1].position).norm() <= zero_;
-        add(strip, points[0], are_one && edge_.is_sharp ? points[1].normal : Vec3::Zero());
-        for (unsigned k = 1; k < strip.columns(); ++k) {
-            if (2 * k == strip.fan + 2 && !are_one)
-                add(strip, points[1]);
-            else
-                strip.numbers.push_back(strip.numbers.back());
+        const Vec3 middle = thirds_[0][1]->own().point(bases[0]);
+        const std::array lines{line_to_apex(0, sides[0], middle), line_to_apex(1, sides[1], middle)};
+        const double turn = along().dot(lines[0].cross(lines[1]));
+        const bool is_bent = sides[0] != sides[1] || (sides[0] == 1 ? turn : -turn) <= 0;
+        const std::optional<Vec3> mitre =
+            are_one || is_bent || !edge_.is_sharp ? std::nullopt : mitre_of(points, middle, lines);
+        // The crease: the mitre, a point on the edge, or the end at which a straight segment turns more.
+        SurfacePoint crease = points[0];
+        bool is_first = true, is_last = are_one;
+        if (mitre) {
+            is_first = false;
+            crease.position = *mitre;
+        } else if (is_bent && !are_one) {
+            is_first = false;
+            crease.position = middle;
+            crease.side = 1;
+        } else if (!are_one) {
+            const Vec3 across = points[1].position - points[0].position;
+            is_last = std::abs(across.dot(points[0].normal)) < std::abs(across.dot(points[1].normal));
+            is_first = !is_last;
+            crease.position = points[is_last].position;
         }
+        if (!edge_.is_sharp && !is_first) crease.normal = (points[0].normal + points[1].normal).normalized();
+        const Vec3 beyond = edge_.is_sharp ? points[1].normal : Vec3::Zero();
+        const auto fill = [&](unsigned columns, const SurfacePoint& point, const Vec3& second_normal) {
+            if (columns == 0) return;
+            add(strip, point, second_normal);
+            strip.numbers.resize(strip.numbers.size() + columns - 1, strip.numbers.back());
+        };
+        const unsigned half = strip.fan / 2, before = is_first ? 0 : half, after = is_last ? 0 : half;
+        fill(before, points[0], Vec3::Zero());
+        fill(strip.columns() - before - after, crease, beyond);
+        fill(after, points[1], Vec3::Zero());
+    }
+
+    bool is_zero(std::size_t of, const Barycentric& base) const {
+        return std::abs(patch_value(weights(of), base)) <= zero_;
+    }
+    /// The vector from one end of the edge to the other.
+    Vec3 along() const {
+        const PatchCell& cell = thirds_[0][1]->own();
+        return cell.point(on_edge(0, 1)) - cell.point(on_edge(0, 0));
+    }
+    Vec3 line_to_apex(std::size_t of, u8 side, const Vec3& from) const {
+        return thirds_[of][side]->own().point(apex()) - from;
+    }
+
+    /// The point where the tangent planes of two points meet in the triangle of the edge point `middle` and the two
+    /// apexes, to which the lines lead. Empty if they do not meet there, or not between the two points.
+    static std::optional<Vec3> mitre_of(const std::array<SurfacePoint, 2>& points, const Vec3& middle,
+                                        const std::array<Vec3, 2>& lines) {
+        std::array<double, 2> height;  // of the edge point below the planes
+        std::array<std::array<double, 2>, 2> slope;  // of the lines, by plane
+        for (std::size_t of = 0; of < 2; ++of) {
+            height[of] = points[of].normal.dot(points[of].position - middle);
+            for (std::size_t line = 0; line < 2; ++line) slope[of][line] = points[of].normal.dot(lines[line]);
+        }
+        const double determinant = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
+        if (determinant == 0) return std::nullopt;
+        const double one = (height[0] * slope[1][1] - height[1] * slope[0][1]) / determinant,
+                     other = (slope[0][0] * height[1] - slope[1][0] * height[0]) / determinant;
+        if (!(one >= 0 && other >= 0 && one + other <= 1)) return std::nullopt;
+        const Vec3 mitre = middle + one * lines[0] + other * lines[1];
+        const Vec3 across = points[1].position - points[0].position;
+        const Vec3 from = mitre - (points[0].position + points[1].position) / 2;
+        if (from.squaredNorm() > across.squaredNorm() || 2 * std::abs(from.dot(across)) > across.squaredNorm())
+            return std::nullopt;
+        return mitre;
     }
 
     // Creases. The way from the inside of the first triangle to the inside of the second has three parts. The first has
@@ -169,20 +238,21 @@ private:
     struct Found {
         SurfacePoint point;
         bool is_second, is_on_edge, is_missed;
+        double lead;  ///< of the first triangle's function: negative where the second's holds
     };
 
     Found found(const Sample& sample, const Place& place) const {
         if (place.zone == 1) {
             const auto hit = gaps_[0][sample.side]->hit(sample.side, in_gap(0, sample.share[0]),
                                                         {place.at, 0, 0, 1 - place.at}, zero_);
-            return {hit.point, hit.is_other, hit.is_at_base, hit.is_missed};
+            return {hit.point, hit.is_other, hit.is_at_base, hit.is_missed, hit.lead};
         }
         const std::size_t of = place.zone / 2;
         Barycentric base = (1 - place.at) * on_edge(of, sample.share[0]);
         base[0] += place.at;
         const u8 side = thirds_[of][1]->side_at(base, zero_);
         const auto hit = thirds_[of][side]->hit(side, base, apex(), zero_);
-        return {hit.point, hit.is_other != (of == 1), false, hit.is_missed};
+        return {hit.point, hit.is_other != (of == 1), false, hit.is_missed, of == 1 ? -hit.lead : hit.lead};
     }
 
     /// Finds where the function changes, between a position where the first triangle's holds and one where the second's
@@ -200,10 +270,21 @@ private:
         }
         if (low.zone != 1 && (is_whole || found(sample, low).is_second || !found(sample, high).is_second))
             return std::nullopt;
+        // Ridders' method; bisection where a function has no zero on a line.
+        double at_low = found(sample, low).lead, at_high = found(sample, high).lead;
+        const auto narrow = [&](double at) {
+            const Place place{low.zone, at};
+            const Found here = found(sample, place);
+            (here.is_second ? high : low) = place;
+            (here.is_second ? at_high : at_low) = here.lead;
+            return here.lead;
+        };
         for (int step = 0; step < most_bisections; ++step) {
-            const Place middle{low.zone, (low.at + high.at) / 2};
-            if (middle.at == low.at || middle.at == high.at) break;
-            (found(sample, middle).is_second ? high : low) = middle;
+            const double start = low.at, end = high.at, middle = (start + end) / 2;
+            if (middle == start || middle == end) break;
+            const double product = at_low * at_high, lead = narrow(middle);
+            const double at = middle + (middle - start) * (lead / std::sqrt(lead * lead - product));
+            if (at > std::min(low.at, high.at) && at < std::max(low.at, high.at)) narrow(at);
         }
         return std::array{low, high};
     }

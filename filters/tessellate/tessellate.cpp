@@ -10,6 +10,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/data/topology.hpp"
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
 #include "tessellate/grid.hpp"
 
 namespace scanmill {
@@ -360,6 +361,30 @@ TriangleMesh without_equal_corners(const TriangleMesh& mesh) {
     result = without_unused_vertices(result);
     const MeshTopology before = topology(mesh), after = topology(result);
     return (before.genus && !after.genus) || (before.closed && !after.closed) ? mesh : result;
+}
+
+double largest_bulge(const PatchComplex& patches, unsigned segments, Execution& execution) {
+    const PatchStructure structure = structure_of(patches);
+    const double zero = rounding * bounding_box(patches.positions.span()).diagonal();
+    std::vector<double> largest(structure.edges.size() / chunk + 1, 0.0);
+    for_each_chunk(execution.threads(), structure.edges.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        double& bulge = largest[begin / chunk];
+        for (std::size_t e = begin; e < end; ++e) {
+            const EdgeTets& edge = structure.edges[e];
+            if (!edge.is_sharp) continue;
+            Strip strip;
+            strip.segments = segments;
+            strip.fan = least_fan;
+            tessellation::build(strip, patches, structure, edge, zero, std::nullopt, segments);
+            const Vec3 &a = patches.positions[edge.a], &b = patches.positions[edge.b];
+            for (std::size_t s = 0; s < strip.samples.size(); ++s) {
+                const Vec3& at = strip.points[strip.number(s, least_fan / 2)].position;
+                bulge = std::max(bulge, (nearest_on_segment(at, a, b) - at).norm());
+            }
+        }
+    });
+    return std::ranges::max(largest);
 }
 
 }  // namespace scanmill

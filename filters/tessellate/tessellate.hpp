@@ -59,6 +59,10 @@ struct TessellateParams {
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
                         double* left = nullptr);
 
+/// The largest distance between a sharp edge of the mesh and the crease beside it, of `segments` - 1 points of every
+/// crease; 0 without sharp edges.
+double largest_bulge(const PatchComplex& patches, unsigned segments, Execution& execution);
+
 /// The mesh, with vertices at equal positions joined where edges of triangles connect them, and without the triangles
 /// that have a repeated vertex then. The first of the joined vertices keeps its columns. The mesh itself if no triangle
 /// has two corners at one position, or if a closed mesh would not stay closed. Pre: no edge columns.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// a-patch on scanned models, decimated.
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "alpha_solid/alpha_solid.hpp"
@@ -195,7 +196,7 @@ struct CreaseFigures {
     std::vector<double> distances;  ///< distance from an edge's middle to the object's sharp edges, ascending
     std::vector<double>
         turned;  ///< degrees that the dihedral angle differs from that of the object's nearest edge, ascending
-    /// Corners of edges of 20 degrees and more, and those whose normal is nearer to their own triangle's than to that
+    /// Corners of creases of 20 degrees and more, and those whose normal is nearer to their own triangle's than to that
     /// beyond the edge.
     std::size_t corners = 0, one_sided = 0;
 };
@@ -210,22 +211,35 @@ CreaseFigures figures_of(const TriangleMesh& object, std::span<const Edge> edges
                 degrees_between(normal_of(object, half / 3), normal_of(object, of_object[half] / 3));
     const auto corner_normals = fine.face_columns.find("corner-normals")->values<double>();
     const Column* patch = fine.face_columns.find("patch");
-    const auto is_loosened = [&](u32 v) { return v < result.pointed.size() && result.pointed[v]; };
+    const auto is_flat = [&](std::size_t f) { return f < result.flat.size() && result.flat[f]; };
+    std::set<Edge> creases;  // of the light mesh, with tetrahedra; the others have strips
+    for (u32 row = 0; row < result.patches.tets.size(); ++row)
+        if (result.patches.kinds[row] == PatchKind::sharp)
+            creases.insert(make_edge(result.patches.tets[row][1], result.patches.tets[row][2]));
+    const auto is_crease_between = [&](std::size_t one, std::size_t other) {
+        std::vector<u32> common;
+        for (const u32 v : result.mesh.triangles[one])
+            if (std::ranges::find(result.mesh.triangles[other], v) != result.mesh.triangles[other].end())
+                common.push_back(v);
+        return common.size() == 2 && creases.contains(make_edge(common[0], common[1]));
+    };
     CreaseFigures figures;
     for (u32 half = 0; half < opposites.size(); ++half) {
         const u32 other = opposites[half];
         const Edge edge = make_edge(half_edges::start(fine, half), half_edges::end(fine, half));
         if (other == half_edges::boundary || other < half || !std::ranges::binary_search(fine.sharp_edges, edge))
             continue;
-        const Triangle& t = result.mesh.triangles[static_cast<std::size_t>(patch->number(half / 3, 0))];
-        if (std::ranges::any_of(t, is_loosened)) continue;
+        const auto of_one = static_cast<std::size_t>(patch->number(half / 3, 0)),
+                   of_other = static_cast<std::size_t>(patch->number(other / 3, 0));
+        if (is_flat(of_one) || is_flat(of_other)) continue;
         const Vec3 middle = (fine.positions[edge[0]] + fine.positions[edge[1]]) / 2;
         const auto nearest = std::ranges::min_element(
             edges, {}, [&](const Edge& each) { return distance_to(object, std::span(&each, 1), middle); });
         figures.distances.push_back(distance_to(object, std::span(&*nearest, 1), middle));
         const Vec3 one = normal_of(fine, half / 3), second = normal_of(fine, other / 3);
         figures.turned.push_back(std::abs(degrees_between(one, second) - angle_of.at(*nearest)));
-        if (degrees_between(one, second) < 20) continue;
+        // A strip has the normals of the surfaces that it joins.
+        if (degrees_between(one, second) < 20 || !is_crease_between(of_one, of_other)) continue;
         for (const auto& [corner, own, beyond] :
              {std::tuple(half, one, second), std::tuple(half_edges::after(half), one, second),
               std::tuple(other, second, one), std::tuple(half_edges::after(other), second, one)}) {
@@ -310,6 +324,8 @@ TEST_P(APatchRealObject, Decimated_HasItsCreases) {
     };
     const double near = share_up_to(figures.distances, max_error), as_sharp = share_up_to(figures.turned, 5);
     RecordProperty("near", std::to_string(near));
+    RecordProperty("one-sided",
+                   std::to_string(static_cast<double>(figures.one_sided) / static_cast<double>(figures.corners)));
     RecordProperty("as-sharp", std::to_string(as_sharp));
     EXPECT_GE(near, object.near);
     if (object.as_sharp) {
@@ -322,16 +338,16 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         // Its edges are rounded over several triangles, so a single edge has no angle to compare with.
         CreaseCase{"3-mechanical/fandisk_large.off", "", 0.98, std::nullopt, 0.97},
-        CreaseCase{"8-derived/golf_club.ply", "8-derived/golf_club_sharp_edges.txt", 1, 0.6, 0.99},
+        CreaseCase{"8-derived/golf_club.ply", "8-derived/golf_club_sharp_edges.txt", 1, 0.44, 0.99},
         CreaseCase{"3-mechanical/anchor_dense.off", "", 1, 0.65, 1}));
 
-TEST(APatchRealCreases, BesideTips_NeedNoFurtherTips) {
-    // Coarse, so that some of its creases leave their edges. If tips spread along creases, there are more than a tenth.
+TEST(APatchRealCreases, ThatLeaveTheirEdges_CostNoSmoothnessBesideThem) {
+    // Coarse, so that some of its creases leave their edges.
     SCANMILL_REAL_SCAN(path, fetched_data, "meshes/fandisk.off");
     const auto [points, light, max_error] = reduced(*read_mesh(path), 0.01);
     const PatchRun run = patched(light, {}, &points, 2);
-    EXPECT_GT(run.result.repairs.pointed, 0u);
-    EXPECT_LE(10 * run.result.repairs.pointed, run.result.mesh.positions.size());
+    EXPECT_GT(run.result.repairs.opened, 0u);
+    EXPECT_LE(100 * run.result.loosened, run.result.mesh.positions.size());
     EXPECT_EQ(run.result.inverted, 0u);
     EXPECT_EQ(run.result.sign_violations, 0u);
     Context context;
@@ -344,7 +360,7 @@ TEST(APatchRealCreases, OfAnAnchor_AreNearTheOriginalEdges_AndAsSharp) {
     const auto [points, light, max_error] = reduced(mesh);
     const PatchRun run = patched(light, {}, &points, 2);
     Context context;
-    EXPECT_LT(run.result.repairs.pointed, 5u);
+    EXPECT_LT(run.result.loosened, 5u);
     const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, context);
     const auto normal = [](const TriangleMesh& of, u32 f) -> Vec3 {
         const Triangle& t = of.triangles[f];

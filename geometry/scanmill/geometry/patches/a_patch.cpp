@@ -236,10 +236,20 @@ PatchSurface::PatchSurface(const PatchComplex& patches, unsigned threads)
 
 std::optional<u32> PatchSurface::locate(const Vec3& point) const {
     const Array<u32> rows = rows_near(tree_, point);
-    for (const double least : {0.0, -outside_by})
-        for (const u32 row : rows)
-            if (cell(row).coordinates(point).minCoeff() >= least) return active(row, point);
-    return std::nullopt;
+    std::optional<u32> nearest;
+    double smallest = 0;
+    for (const double least : {0.0, -outside_by}) {
+        for (const u32 row : rows) {
+            if (cell(row).coordinates(point).minCoeff() < least) continue;
+            const u32 here = active(row, point);
+            const double size = std::abs(cell(here).value(point));
+            if (nearest && size >= smallest) continue;
+            nearest = here;
+            smallest = size;
+        }
+        if (nearest) break;
+    }
+    return nearest;
 }
 
 u32 PatchSurface::active(u32 tet, const Vec3& point) const {

@@ -93,8 +93,8 @@ public:
     /// tetrahedron.
     explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
 
-    /// The tetrahedron that contains the point. If several contain it, the first row is returned; of two partners, the
-    /// active row. Cost: O(log n).
+    /// The tetrahedron that contains the point; of two partners, the active row. If several contain it, because parts
+    /// of the surface are near each other, the one with the smallest |F|; ties: the first row. Cost: O(log n).
     std::optional<u32> locate(const Vec3& point) const;
     PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
 
