@@ -8,6 +8,7 @@
 
 #include "a_patch/construction.hpp"
 #include "a_patch/fit.hpp"
+#include "a_patch/joint_fit.hpp"
 #include "a_patch/normal_fit.hpp"
 #include "a_patch/normals.hpp"
 #include "scanmill/base/error.hpp"
@@ -35,6 +36,7 @@ constexpr double least_factor = 1.05, most_factor = 3;
 constexpr double most_loosened = 0.1;
 constexpr double most_worse = 1.01;
 constexpr double most_left_out = 0.5;
+constexpr double most_unseen = 0.1;  // share of the vertices without points
 constexpr double rounding = 1e-12;  // share of the diagonal
 constexpr double least_regularisation = 1e-6;
 constexpr unsigned segments_for_bulge = 4;  // of a sharp edge, to measure `crease-max`
@@ -79,7 +81,7 @@ MeshTopology require_usable(const TriangleMesh& mesh, const APatchParams& params
             .hint(fmt::format("the default is {}", APatchParams().apex_factor));
     if (!(params.fairing >= 0 && std::isfinite(params.fairing)))
         throw Error("fairing must be at least 0; it is {}", params.fairing)
-            .hint("0 disables fairing; at 1 fairness weighs about as much as the points");
+            .hint("1 takes the weight that predicts the points best; 10 makes the surface smoother");
     if (!(params.regularisation >= least_regularisation && params.regularisation <= 1))
         throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation)
             .hint(fmt::format("the default is {}; larger values are used where they predict the points better",
@@ -176,15 +178,15 @@ Weights fit_and_measure(Construction& construction, const PointCloud* points, co
     const std::span<const Vec3> positions = points ? points->positions.span() : std::span<const Vec3>();
     const LocatedPoints located = locate(weights.patches, positions, context);
     result.left_out = located.left_out;
-    result.unfairness_before = unfairness(hull, params.curvature);
-    const auto violating_triangles = [&](const PatchComplex& patches) {
-        return construction.violating_triangles(patches);
-    };
-    FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
-                           {params.fit, params.fairing, params.regularisation}, violating_triangles, context);
-    weights = std::move(fitted.weights);
-    result.regularisation = fitted.regularisation;
-    result.unfairness_after = unfairness(hull, params.curvature);
+    if (params.fit && !result.joint_fit) {
+        const auto violating_triangles = [&](const PatchComplex& patches) {
+            return construction.violating_triangles(patches);
+        };
+        FitResult fitted = fit(hull, std::move(weights), located, params.curvature, {params.regularisation},
+                               violating_triangles, context);
+        weights = std::move(fitted.weights);
+        result.regularisation = fitted.regularisation;
+    }
     context.progress(0.8);
     if (located.points.empty()) return weights;
     PointDistances found = distances(hull, weights.patches, positions, located, context);
@@ -245,6 +247,12 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
             "same object in the same position",
             result.left_out, count_text(points->size(), "point is", "points are"),
             by_count(result.left_out, "does", "do"), params.fit ? "count in the fit" : "count"));
+    if (result.joint_fit && result.left_out < points->size() &&
+        static_cast<double>(result.joint_fit->unseen) > most_unseen * static_cast<double>(result.mesh.positions.size()))
+        context.doubt(fmt::format(
+            "no point is near {} of {} vertices: the surface there only continues its surroundings; scan the rest, or "
+            "cut it off",
+            result.joint_fit->unseen, result.mesh.positions.size()));
     if (!crossing.empty())
         context.doubt(fmt::format("parts of the surface intersect at {}, because the mesh intersects itself there",
                                   count_text(crossing.size(), "triangle", "triangles")));
@@ -284,8 +292,26 @@ void report(const APatchResult& result, Context& context) {
     count("left-out", result.left_out);
     context.metric("crease-max", result.crease_max, Unit::length);
     if (result.regularisation) context.metric("regularisation", *result.regularisation, Unit::number);
-    context.metric("fairness-before", result.unfairness_before, Unit::number);
-    context.metric("fairness-after", result.unfairness_after, Unit::number);
+    if (!result.joint_fit) return;
+    context.metric("weight", result.joint_fit->weight, Unit::number);
+    context.metric("offset-rms", result.joint_fit->offset_rms, Unit::length);
+    context.metric("offset-max", result.joint_fit->offset_max, Unit::length);
+    count("turned", result.repairs.replaced);
+    count("flips", result.joint_fit->flips);
+}
+
+/// Gives vertices without sharp edges these normals.
+void restore_whole_sectors(PatchMesh& mesh, const CornerNormals& normals) {
+    const Sectors sectors = sectors_of(mesh.mesh);
+    for (std::size_t f = 0; f < normals.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (sectors.is_whole[sectors.of_corner[f][i]]) mesh.normals[f][i] = normals[f][i];
+}
+
+bool interpolates(const APatchParams& params) {
+    using Interpolate = APatchParams::Interpolate;
+    return params.interpolate == Interpolate::yes ||
+           (params.interpolate == Interpolate::automatic && params.normals != APatchParams::Normals::automatic);
 }
 
 }  // namespace
@@ -311,8 +337,16 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
 
     Construction construction(work, {params.apex_factor, params.split, params.curvature}, context);
     construction.prepare();
-    if (points && points->size() > 0 && params.fit && params.normals == APatchParams::Normals::automatic)
-        fit_normals(work, points->positions.span(), context);
+    const bool is_automatic = params.normals == APatchParams::Normals::automatic;
+    if (points && points->size() > 0 && params.fit) {
+        const CornerNormals given = work.normals;
+        if (is_automatic) fit_normals(work, points->positions.span(), context);
+        if (!interpolates(params)) {
+            restore_whole_sectors(work, given);
+            result.joint_fit = fit_jointly(work, points->positions.span(), params.fairing, context);
+            construction.prepare_normals();
+        }
+    }
     construction.run();
     const Hull& hull = construction.hull;
     result.repairs = construction.repairs;

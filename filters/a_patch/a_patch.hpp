@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "a_patch/joint_fit.hpp"
 #include "a_patch/repair.hpp"
 #include "a_patch/weights.hpp"
 #include "scanmill/data/points.hpp"
@@ -27,11 +28,17 @@ struct APatchParams {
     };
     Normals normals = Normals::automatic;
     a_patches::Split split = a_patches::Split::always;
-    /// Whether the edges' slopes are fitted to the points. With `automatic`, the normals are fitted, too.
+    /// Whether the surface is fitted to the points.
     bool fit = true;
-    /// Weight of the fairness relative to the fit, at least 0; see fit.hpp.
-    double fairing = 0;
-    /// Smallest weight of the penalty on changes of the slopes, 1e-6 to 1.
+    enum class Interpolate {
+        automatic,  ///< `no` if there are points and `normals` is `automatic`
+        yes,  ///< the surface passes through the given vertices; see fit_normals() and fit()
+        no  ///< vertices, normals and edge slopes are fitted together; see fit_jointly()
+    };
+    Interpolate interpolate = Interpolate::automatic;
+    /// A factor on the weight of the bending that the fit finds, at least 0.
+    double fairing = 1;
+    /// Of a fit that interpolates: the smallest weight of the penalty on changes of the slopes, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// Height of an apex over its triangle, as a multiple of the smallest possible height; 1.05 to 3. A further 0.15
@@ -42,9 +49,9 @@ struct APatchParams {
 struct APatchResult {
     /// `patches.triangles` contains rows of `mesh`.
     PatchComplex patches;
-    /// The input's mesh after refinement. Each input triangle keeps its row; if it was cut, its first part is there,
-    /// and the other parts are appended. New vertices follow the input's. The sharp edges are those of the surface. The
-    /// only column is the face column `corner-normals`, with the normals that were used.
+    /// The mesh after fit and refinement. Each input triangle keeps its row, unless an edge was flipped; if it was cut,
+    /// its first part is there, and the other parts are appended. New vertices follow the input's. The sharp edges are
+    /// those of the surface. The only column is the face column `corner-normals`, with the normals that were used.
     TriangleMesh mesh;
     a_patches::Repairs repairs;
     std::size_t divided = 0;  ///< number of triangles with three tetrahedra per side
@@ -66,15 +73,15 @@ struct APatchResult {
         double rms_to_mesh = 0;  ///< distance of the same points from `mesh`
     };
     std::optional<Distances> fit;  ///< distances of the points in tetrahedra; empty without points
-    /// The median over the edges of the weights used; empty if the surface is neither fitted nor made fair.
-    std::optional<double> regularisation;
     double crease_max = 0;  ///< the largest distance of a crease from its sharp edge
-    /// unfairness() of the default slopes, and of the result's slopes; see fit.hpp.
-    double unfairness_before = 0, unfairness_after = 0;
+    /// Of a fit that interpolates: the median over the edges of the weights used.
+    std::optional<double> regularisation;
+    std::optional<a_patches::JointFit> joint_fit;  ///< of a fit that does not interpolate
 };
 
-/// Builds an implicit surface F = 0 through the mesh's vertices. F is cubic in every tetrahedron, negative inside the
-/// object and positive outside. At a vertex the gradient of F is the normal, which has length 1.
+/// Builds an implicit surface F = 0 through the vertices of a mesh. F is cubic in every tetrahedron, negative inside
+/// the object and positive outside. At a vertex the gradient of F is the normal, which has length 1. With points, the
+/// mesh is first fitted to them, or the normals and slopes are if the surface interpolates; see APatchParams.
 ///
 /// The gradients agree where tetrahedra meet, except at sharp edges. There the functions of the two triangles meet in a
 /// crease: a curve through the edge's ends. At a vertex, every fan of triangles between sharp edges has a normal of its
@@ -93,15 +100,15 @@ struct APatchResult {
 ///       warning. The result is doubtful in these cases:
 ///       - `sign_violations` is not 0.
 ///       - The points are farther from the surface than from the mesh (rms), or more than half of them are left out.
+///       - More than a tenth of the vertices have no point in their triangles, in a fit that moves vertices.
 ///       - The surface intersects itself, because the mesh does.
 ///       - The surface follows the mesh at more than a tenth of the vertices.
 ///       - The mesh is closed and inside out.
 /// Ties: among equally long edges, the one with the lower vertices is bisected first. Among equally acute edges, the
 /// one with the lower vertices becomes sharp. Bytes depend neither on the number of threads nor on the processor.
 /// Cost: linear. One thread takes 15 to 35 us and 4 kB per triangle; with creases that do not fit, up to 400 us per
-/// triangle. To locate and measure the points takes 5 us per point. A fit adds 3 us per point, and 120 us and 6 kB per
-/// triangle; with noise and few points per triangle it adds 540 us per triangle.
-/// Metrics: see plugin.cpp.
+/// triangle. To locate and measure the points takes 5 us per point. A fit adds 15 us per point and 500 us per triangle;
+/// if it interpolates, 3 us per point and 120 to 540 us per triangle. Metrics: see plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);
 
 }  // namespace scanmill

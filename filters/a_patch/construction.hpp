@@ -35,6 +35,8 @@ public:
 
     /// Makes sharp edges smooth whose sides agree, and replaces normals that oppose a triangle.
     void prepare();
+    /// Replaces normals that oppose a triangle.
+    void prepare_normals() { replace_opposing(mesh_, repairs); }
     /// Pre: prepare(). Post: every edge beside which tetrahedra do not fit is open, or straight and needs none.
     void run();
     /// Triangles beside which another surface over the hull is not sound: at sharp edges, or because their parts

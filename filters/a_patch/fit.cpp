@@ -78,26 +78,6 @@ Vector2 least_within(const Matrix2& matrix, const Vector2& right, const Limits& 
     return best;
 }
 
-// Fairness.
-
-/// By edge, for inner edges: a third of the mean gradient of the quadrics of its two triangles, at the middle of the
-/// edge.
-std::vector<Vec3> fair_slopes(const Hull& hull, Curvature curvature) {
-    std::vector<Vec3> slopes(hull.edges.size(), Vec3::Zero());
-    for (u32 f = 0; f < hull.faces.size(); ++f) {
-        const Triangle& t = hull.triangles[f];
-        const Eigen::Matrix3d second = face_curvature(hull, f, curvature);
-        Vec3 normal = Vec3::Zero();
-        for (const Vec3& n : hull.normals[f]) normal += n / 3;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3 &a = hull.positions[t[i]], &b = hull.positions[t[next(i)]], &c = hull.positions[t[previous(i)]];
-            const Vec3 to = (a + b) / 2 - (a + b + c) / 3;
-            slopes[hull.faces[f].edges[i]] += (normal + second * to) / 6;
-        }
-    }
-    return slopes;
-}
-
 /// The pairs of edges on whose slopes one tetrahedron may depend.
 std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
     std::vector<std::pair<u32, u32>> pairs;
@@ -138,17 +118,14 @@ public:
             wrong_before_.push_back(wrong_signs(weights_.patches, row));
         changes_.assign(hull_.edges.size(), Vector2::Zero());
         regularisation_.assign(hull_.edges.size(), params_.regularisation);
-        const bool has_points = params_.to_points && !points_.empty();
-        if (!has_points && params_.fairing == 0) return {std::move(weights_), std::nullopt};
-        for (int round = 0; round < (has_points ? rounds : 1); ++round) {
+        if (points_.empty()) return {std::move(weights_), std::nullopt};
+        for (int round = 0; round < rounds; ++round) {
             system_.clear();
-            if (has_points) {
-                std::array<BlockSystem, 2> halves{system_, system_};
-                add_points(halves);
-                for (const BlockSystem& half : halves) system_.add(half);
-                set_scale();
-                if (round == 0) set_regularisation(halves);
-            }
+            std::array<BlockSystem, 2> halves{system_, system_};
+            add_points(halves);
+            for (const BlockSystem& half : halves) system_.add(half);
+            set_scale();
+            if (round == 0) set_regularisation(halves);
             add_priors();
             solve();
             set_slopes();
@@ -298,14 +275,7 @@ private:
     }
 
     void add_priors() {
-        const std::vector<Vec3> fair = params_.fairing > 0 ? fair_slopes(hull_, curvature_) : std::vector<Vec3>();
-        for (u32 e = 0; e < system_.size(); ++e) {
-            Matrix2& diagonal = system_.block(e, e);
-            diagonal.diagonal().array() += scale_ * regularisation_[e];
-            if (params_.fairing == 0 || !hull_.edges[e].is_smooth()) continue;
-            diagonal.diagonal().array() += scale_ * params_.fairing;
-            system_.right(e) += scale_ * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
-        }
+        for (u32 e = 0; e < system_.size(); ++e) system_.block(e, e).diagonal().array() += scale_ * regularisation_[e];
     }
 
     /// Limits each edge's changes so that its function keeps its sign, and a share of its value, at the apexes of the
@@ -442,18 +412,6 @@ LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, 
 FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
               const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles, Execution& execution) {
     return Fitter(hull, std::move(weights), points, curvature, params, violating_triangles, execution).fitted();
-}
-
-double unfairness(const Hull& hull, Curvature curvature) {
-    const std::vector<Vec3> fair = fair_slopes(hull, curvature);
-    double sum = 0;
-    for (std::size_t e = 0; e < hull.edges.size(); ++e) {
-        const HullEdge& edge = hull.edges[e];
-        if (!edge.is_smooth()) continue;
-        const Vec3 d = (hull.positions[edge.b] - hull.positions[edge.a]).normalized(), to = fair[e] - edge.slopes[0];
-        sum += (to - d * d.dot(to)).squaredNorm();
-    }
-    return sum;
 }
 
 PointDistances distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Fits the slopes of a hull's edges to data points, and makes them fair. The vertices and their gradients stay as they
-/// are; normal_fit.hpp fits the gradients before. The gradients of neighbouring tetrahedra stay equal, because they are
+/// Fits the slopes of a hull's edges to data points. The vertices and their gradients stay as they are; normal_fit.hpp
+/// fits the gradients before. The gradients of neighbouring tetrahedra stay equal, because they are
 /// equal for any slopes.
 ///
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 5; the distance is that of Taubin 1991, "Estimation of
@@ -31,21 +31,18 @@ struct LocatedPoints {
 LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution);
 
 struct FitParams {
-    /// Whether the slopes follow the points. If not, they are only made fair.
-    bool to_points = true;
-    double fairing = 0;  ///< at least 0
     double regularisation = 1e-3;  ///< the smallest weight that an edge can choose, above 0
 };
 
 struct FitResult {
     Weights weights;
-    /// The median over the edges of the weights used; empty if nothing was fitted or made fair.
+    /// The median over the edges of the weights used; empty if nothing was fitted.
     std::optional<double> regularisation;
 };
 
 /// Minimises, over the components of the slopes that the vertices leave free,
-///     sum of (F / |grad F|)² over the points + s · (regularisation · |change|² + fairing · unfairness).
-/// s is the mean diagonal element of the first sum's matrix, or 1 without points. Points whose distance is above 3
+///     sum of (F / |grad F|)² over the points + s · regularisation · |change|².
+/// s is the mean diagonal element of the first sum's matrix. Points whose distance is above 3
 /// times the median near their triangle count less (Huber). Derivatives are taken at the foot points. The minimisation
 /// is done 3 times; each time, gradients, foot points and the points' weights follow from the last solution.
 ///
@@ -56,17 +53,13 @@ struct FitResult {
 /// which each half of the points best predicts the distances of the other half near the edge. Therefore few or noisy
 /// points change the slopes less.
 ///
-/// Sets the slopes of `hull` and returns its new weights. Pre: `weights` are those of `hull` before. Without fairing,
-/// slopes without points near them keep their bits. Bytes do not depend on the number of threads.
+/// Sets the slopes of `hull` and returns its new weights. Pre: `weights` are those of `hull` before. Slopes
+/// without points near them keep their bits. Bytes do not depend on the number of threads.
 /// Cost: about 1 us per point and 100 us per triangle.
 ///
 /// `violating_triangles` returns triangles beside which a surface is not sound: the changes of their edges are reduced.
 FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
               const std::function<std::vector<u32>(const PatchComplex&)>& violating_triangles, Execution& execution);
-
-/// Sum over the smooth inner edges of |slope - g|², without the component along the edge. g is a third of the mean
-/// gradient of the quadrics of the edge's two triangles, at the middle of the edge.
-double unfairness(const Hull& hull, Curvature curvature);
 
 /// Unsigned distances of the located points, in their order.
 struct PointDistances {

@@ -48,9 +48,9 @@ HullFace face_of(const std::array<Vec3, 3>& p) {
 }
 
 /// The default slope of an edge, which is exact for quadrics. `d` goes from end a to end b; `na` and `nb` are the
-/// normals there.
-Vec3 default_slope(const Vec3& d, const Vec3& na, const Vec3& nb) {
-    const Vec3 sum = na + nb, mean = sum / 6;
+/// normals there, and `bend` is added to their mean.
+Vec3 default_slope(const Vec3& d, const Vec3& na, const Vec3& nb, const Vec3& bend = Vec3::Zero()) {
+    const Vec3 sum = na + nb, mean = sum / 6 + bend / 3;
     return mean - d * ((mean.dot(d) + sum.dot(d) / 3) / d.squaredNorm());
 }
 
@@ -171,7 +171,10 @@ private:
             const std::array<Vec3, 2> of_first{hull_.normals[half / 3][half % 3],
                                                hull_.normals[half / 3][(half + 1) % 3]};
             const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
-            edge.slopes.fill(default_slope(d, of_first[0], of_first[1]));
+            const auto bend = mesh_.bends.find(make_edge(edge.a, edge.b));
+            edge.slopes.fill(
+                default_slope(d, of_first[0], of_first[1],
+                              bend == mesh_.bends.end() || edge.is_sharp ? Vec3(Vec3::Zero()) : bend->second));
             if (edge.is_sharp) describe_sharp(edge, of_first, other);
             set_slope_without_normals(edge);
             hull_.edges.push_back(edge);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "scanmill/base/execution.hpp"
@@ -89,6 +90,10 @@ struct PatchMesh {
     /// By triangle: whether the surface is the triangle, because no smooth surface fits there. Its three edges are
     /// open, and its normals are that of the triangle. False for triangles beyond the end of the vector.
     std::vector<bool> flat{};
+
+    /// By smooth edge: what is added to the mean of the normals at its ends to get the gradient in its middle. Zero for
+    /// edges that are not here.
+    std::map<Edge, Vec3> bends{};
 
     /// The edges whose bisection made the last vertices of the mesh, in their order.
     std::vector<Edge> bisected{};

@@ -8,17 +8,18 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 7)
+    return Declare<P>("a-patch", 8)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
             "Among equally long edges, the one with the lower vertices is bisected first. Among equally acute edges, "
             "the one with the lower vertices becomes sharp.")
         .not_finite("Refused, with their number and the first of them.")
-        .in<TriangleMesh>(
-            "mesh",
-            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface, and its sharp edges "
-            "become creases. Its face column `corner-normals` gives the normals at the vertices.")
+        .in<TriangleMesh>("mesh",
+                          "A manifold, closed or open, oriented consistently. Its sharp edges become creases. Without "
+                          "points, or with "
+                          "`interpolate: yes`, its vertices lie on the surface. Its face column `corner-normals` gives "
+                          "the normals at the vertices.")
         .in<PointCloud>("points",
                         "The scan. The surface is fitted to its points. They also give the normals at the vertices if "
                         "the mesh has no `corner-normals`.",
@@ -38,16 +39,26 @@ SCANMILL_FILTER() {
                   "A triangle has one tetrahedron per side, unless it cannot join its neighbours with equal gradients; "
                   "there are up to a third fewer tetrahedra."}},
                 "Choice of the triangles whose tetrahedra are divided at a base point.")
-        .param("fit", &P::fit, "Fits normals (with `normals: auto`) and edge gradients to the points.")
+        .param("fit", &P::fit, "Fits the surface to the points.")
+        .choice("interpolate", &P::interpolate,
+                {{"auto", P::Interpolate::automatic, "`no` if there are points and `normals` is `auto`, else `yes`."},
+                 {"yes", P::Interpolate::yes,
+                  "The surface passes through the vertices of the mesh. With `normals: auto` the normals are fitted "
+                  "first, then "
+                  "the edge gradients."},
+                 {"no", P::Interpolate::no,
+                  "Vertices, normals and edge gradients are fitted together, so that the surface bends little; before, "
+                  "edges "
+                  "are flipped and vertices moved for more even triangles. Vertices and normals at sharp edges stay."}},
+                "Whether the surface of a fit passes through the given vertices.")
         .param("fairing", &P::fairing,
-               "Weight of the surface's fairness relative to its distance from the points; at 1 both weigh about the "
-               "same.",
+               "A factor on the weight of the surface's bending that the fit finds. Larger values make it smoother.",
                at_least(0))
-        .param(
-            "regularisation", &P::regularisation,
-            "Smallest penalty on changes of the edge gradients, relative to the points. An edge gets a larger penalty "
-            "if each half of the points near it then predicts the other half better.",
-            at_least(1e-6), at_most(1))
+        .param("regularisation", &P::regularisation,
+               "With `interpolate: yes`: smallest penalty on changes of the edge gradients, relative to the points. An "
+               "edge "
+               "gets a larger penalty if each half of the points near it then predicts the other half better.",
+               at_least(1e-6), at_most(1))
         .choice(
             "curvature", &P::curvature,
             {{"distance", Curvature::distance, "The second derivative is 0: F grows like a distance."},
@@ -92,11 +103,14 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("crease-max", Unit::length,
                 "Largest distance between a crease and the mesh's sharp edge; creases of round edges bulge.")
-        .metric("regularisation", Unit::number, "Median over the edges of the penalty used.")
-        .metric("fairness-before", Unit::number,
-                "Sum over the edges of the squared difference between the edge's gradient and that of the triangles' "
-                "quadrics, before fitting and fairing.")
-        .metric("fairness-after", Unit::number, "The same sum as `fairness-before`, for the result.", smaller_is_better)
+        .metric("regularisation", Unit::number, "With `interpolate: yes`: median over the edges of the penalty used.")
+        .metric(
+            "weight", Unit::number,
+            "Weight of the bending that was used: the one that predicts each half of the points best from the other.")
+        .metric("offset-rms", Unit::length, "Root of the mean squared way of the vertices in the fit, along normals.")
+        .metric("offset-max", Unit::length, "Longest way of a vertex in the fit, along its normal.")
+        .metric("turned", Unit::count, "Normals turned because they opposed a triangle.")
+        .metric("flips", Unit::count, "Edges flipped for more even triangles.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set(
                 "patches",

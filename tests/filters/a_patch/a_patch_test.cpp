@@ -313,7 +313,9 @@ TEST(APatch, NormalsOfPoints_AreBetterThanThoseOfACoarseMesh) {
     PointCloud scan;
     scan.positions = ellipsoid(30).positions;
     const auto worst = [&](const PointCloud* points) {
-        const APatchResult result = patched(coarse, {}, points).result;
+        APatchParams params;
+        params.interpolate = APatchParams::Interpolate::yes;
+        const APatchResult result = patched(coarse, params, points).result;
         double largest = 0;
         for (u32 v = 0; v < coarse.positions.size(); ++v) {
             const Vec3& p = coarse.positions[v];

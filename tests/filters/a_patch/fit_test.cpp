@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fitting and fairing: recovered surfaces, errors of known shapes, outliers, and what fitting must not change.
+// Fits through the vertices of the mesh: recovered surfaces, errors of known shapes, outliers, and what fitting must
+// not change.
 #include "a_patch/fit.hpp"
 
 #include <limits>
@@ -72,17 +73,16 @@ TriangleMesh creased_torus(u32 around, u32 along) {
 }
 
 /// Normals of the mesh unless it has corner-normals: not of the points.
-APatchParams params_for(const TriangleMesh& mesh, double fairing = 0) {
+APatchParams params_for(const TriangleMesh& mesh) {
     APatchParams params;
     params.normals = mesh.face_columns.find("corner-normals") ? PatchNormals::given : PatchNormals::mesh;
-    params.fairing = fairing;
     return params;
 }
-PatchRun fitted(const TriangleMesh& mesh, const PointCloud& points, double fairing = 0, unsigned threads = 1) {
-    return patched(mesh, params_for(mesh, fairing), &points, threads);
+PatchRun fitted(const TriangleMesh& mesh, const PointCloud& points, unsigned threads = 1) {
+    return patched(mesh, params_for(mesh), &points, threads);
 }
-PatchRun by_default(const TriangleMesh& mesh, const PointCloud* points = nullptr, double fairing = 0) {
-    APatchParams params = params_for(mesh, fairing);
+PatchRun by_default(const TriangleMesh& mesh, const PointCloud* points = nullptr) {
+    APatchParams params = params_for(mesh);
     params.fit = false;
     return patched(mesh, params, points);
 }
@@ -205,7 +205,7 @@ TEST(APatchFit, ASurfaceOfOtherSlopes_IsFoundAgainFromItsPoints) {
     EXPECT_EQ(located.left_out, 0u);
     a_patches::Hull found = base->hull;
     const a_patches::Weights weights =
-        fit(found, base->weights, located, Curvature::distance, {true, 0, 1e-9}, no_violation, execution).weights;
+        fit(found, base->weights, located, Curvature::distance, {1e-9}, no_violation, execution).weights;
     double before = 0, after = 0;
     for (u32 tet = 0; tet < weights.patches.tets.size(); ++tet)
         for (std::size_t i = 0; i < 20; ++i) {
@@ -414,7 +414,6 @@ TEST(APatchFit, WithoutPoints_NothingChanges) {
     EXPECT_THAT(run.warnings, IsEmpty());
     EXPECT_FALSE(run.result.fit);
     EXPECT_EQ(metric_of(run, "left-out"), 0);
-    EXPECT_EQ(metric_of(run, "fairness-before"), metric_of(run, "fairness-after"));
     EXPECT_TRUE(std::isnan(metric_of(run, "regularisation")));
 }
 
@@ -434,7 +433,6 @@ TEST(APatchFit, Off_ReportsNoRegularisation_AndThatNothingIsMeasured) {
     const PatchRun measured = by_default(mesh, &points);
     EXPECT_GT(metric_of(measured, "fit-rms"), 0);
     EXPECT_TRUE(std::isnan(metric_of(measured, "regularisation")));
-    EXPECT_EQ(metric_of(by_default(mesh, nullptr, 0.1), "regularisation"), 1e-3);
     EXPECT_THAT(
         by_default(mesh, &far).warnings,
         ElementsAre("1 of 1 point is in no tetrahedron near the surface and does not count; check that the mesh and "
@@ -458,7 +456,9 @@ TEST(APatchFit, ASurfaceFartherFromThePointsThanItsMesh_IsDoubtful) {
                 testing::Contains(fmt::format(
                     "the points are farther from the surface (rms {:.3g} u) than from the mesh (rms {:.3g} u)",
                     run.result.fit->rms, run.result.fit->rms_to_mesh)));
-    const PatchRun fitted = patched(mesh, {}, &points);
+    APatchParams params;
+    params.interpolate = APatchParams::Interpolate::yes;
+    const PatchRun fitted = patched(mesh, params, &points);
     EXPECT_LT(fitted.result.fit->rms, 0.2 * fitted.result.fit->rms_to_mesh);
     EXPECT_THAT(fitted.warnings, testing::Not(testing::Contains(HasSubstr("farther from the surface"))));
 }
@@ -560,21 +560,20 @@ TEST(APatchFit, OnlyOutliers_KeepTheSurfaceSound) {
 TEST(APatchFit, AnyNumberOfThreads_GivesTheSameBits) {
     const TriangleMesh mesh = irregular_torus(24, 12, 0.25);
     const PointCloud points = torus_points(20'000, 1e-3);
-    const PatchRun one = fitted(mesh, points, 0.01), four = fitted(mesh, points, 0.01, 4);
+    const PatchRun one = fitted(mesh, points), four = fitted(mesh, points, 4);
     expect_same_bits(one.result.patches, four.result.patches);
-    for (const char* name : {"fit-rms", "fit-p95", "fit-max", "left-out", "fairness-before", "fairness-after"})
+    for (const char* name : {"fit-rms", "fit-p95", "fit-max", "left-out"})
         EXPECT_EQ(metric_of(one, name), metric_of(four, name)) << name;
 }
 
 TEST(APatchFit, ALargerMeshWithLargerPoints_HasLargerWeights) {
     const TriangleMesh mesh = irregular_torus(12, 6, 0.1);
     const PointCloud points = torus_points(4000, 1e-3);
-    const APatchResult one = fitted(mesh, points, 0.01).result,
-                       other = fitted(scaled(mesh, 1000), moved(points, 1000), 0.01).result;
+    const APatchResult one = fitted(mesh, points).result,
+                       other = fitted(scaled(mesh, 1000), moved(points, 1000)).result;
     for (u32 tet = 0; tet < one.patches.tets.size(); ++tet)
         for (std::size_t i = 0; i < 20; ++i)
             EXPECT_NEAR(other.patches.weights[tet][i], 1000 * one.patches.weights[tet][i], 1e-4);
-    EXPECT_NEAR(other.unfairness_after, one.unfairness_after, 1e-5 * one.unfairness_after);
 }
 
 TEST(APatchFit, UndividedTriangles_AreFitted) {
@@ -642,7 +641,7 @@ TEST(APatchFit, SharpStraightEdges_StayExactlyStraight) {
     }
     const PatchRun run = fitted(mesh, cloud(std::move(scan)));
     expect_sound(run.result);
-    EXPECT_GT(run.result.unfairness_after, run.result.unfairness_before);
+    EXPECT_NE(run.result.patches.weights[0], by_default(mesh).result.patches.weights[0]);
     const PatchComplex& patches = run.result.patches;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet)
         for (std::size_t i = 0; i < 4; ++i)
@@ -674,6 +673,7 @@ TEST(APatchFitNormals, ThatFollowDetailsBetweenTheVertices_AreTurnedTowardsThePo
     const auto error = [&](PatchNormals source, const PointCloud* wired) {
         APatchParams params;
         params.normals = source;
+        params.interpolate = APatchParams::Interpolate::yes;
         const PatchRun run = patched(mesh, params, wired);
         expect_sound(run.result);
         return rms_distance(run.result.patches, torus_distance);
@@ -713,41 +713,10 @@ TEST(APatchFitNormals, OfACurvedSurfaceBesidePlanes_AreFitted) {
                                        : Vec3(radius * out.x(), radius * out.y(), i % 8 < 4 ? -1 : 1));
     }
     const PointCloud points = cloud(std::move(positions));
-    const PatchRun run = patched(mesh, {}, &points);
+    APatchParams params;
+    params.interpolate = APatchParams::Interpolate::yes;
+    const PatchRun run = patched(mesh, params, &points);
     EXPECT_LT(worst_distance(run.result.patches, cylinder_distance), 3e-3);
-}
-
-// Fairing.
-
-TEST(APatchFairing, TheEnergyFallsWithTheWeight_AndVerticesAndGradientsStay) {
-    const TriangleMesh mesh = irregular_torus(24, 12, 0.25);
-    const PointCloud points = torus_points(10'000, 1e-3);
-    for (const PointCloud* wired : {static_cast<const PointCloud*>(nullptr), &points}) {
-        double before = std::numeric_limits<double>::infinity(), distance = 0;
-        for (const double weight : {0.0, 0.01, 0.1, 1.0}) {
-            const PatchRun run = patched(mesh, params_for(mesh, weight), wired);
-            expect_sound(run.result);
-            EXPECT_LT(run.result.unfairness_after, before);
-            before = run.result.unfairness_after;
-            if (!wired) continue;
-            EXPECT_GT(run.result.fit->rms, distance);  // the price
-            distance = run.result.fit->rms;
-        }
-    }
-}
-
-TEST(APatchFairing, WithoutFitting_PointsOnlyMeasure) {
-    const TriangleMesh mesh = irregular_torus(12, 6, 0.1);
-    const PointCloud points = torus_points(1000);
-    const PatchRun run = by_default(mesh, &points, 0.1);
-    expect_same_bits(run.result.patches, by_default(mesh, nullptr, 0.1).result.patches);
-    EXPECT_GT(metric_of(run, "fit-rms"), 0);
-}
-
-TEST(APatchFairing, OfAPlane_TheDefaultIsFair) {
-    const PatchRun run = by_default(rectangle(2, 1), nullptr, 1);
-    EXPECT_EQ(run.result.unfairness_before, 0);
-    EXPECT_EQ(run.result.unfairness_after, 0);
 }
 
 // Refusals.
