@@ -34,7 +34,7 @@ constexpr double first_weight = 1e-3;
 constexpr int first_steps = 2, last_steps = 3;
 // Exponents of the square root of 10: every second one is tried, then those beside the best.
 constexpr int least_exponent = -12, most_exponent = 0;
-constexpr double ridge = 1e-9;
+constexpr double ridge = 1e-9, most_ridge = 1e12;
 constexpr double least_cosine_of_slope = 0.05;  // lower bound of denominators
 constexpr double most_outside = 0.3;            // barycentric, of the foot of a point
 constexpr double most_turn = 0.5, most_offset = 0.3;  // radians, and multiples of h
@@ -483,12 +483,13 @@ private:
         const double of_ridge = ridge * area_ * size_ * size_ / static_cast<double>(mesh_.mesh.positions.size());
         Eigen::SimplicialLLT<Sparse, Eigen::Lower> solver;
         solver.analyzePattern(matrix);
-        for (double factor = 1;; factor *= 1000) {
+        for (double factor = 1; factor <= most_ridge; factor *= 1000) {
             Sparse with_ridge = matrix;
             for (u32 i = 0; i < unknowns_; ++i) with_ridge.coeffRef(i, i) += factor * of_ridge;
             solver.factorize(with_ridge);
             if (solver.info() == Eigen::Success) return solver.solve(right);
         }
+        return Vector::Zero(unknowns_);  // rounding leaves nothing of triangles that are this thin
     }
 
     /// The sum of the squared distances of the points of a half from the surface with these unknowns, up to a constant.
