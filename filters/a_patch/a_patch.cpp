@@ -209,10 +209,8 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
     const Repairs& repairs = result.repairs;
     if (repairs.replaced > 0)
-        context.warn(
-            fmt::format("{} replaced because of an opposing triangle, tetrahedra inside out, or a crease that leaves "
-                        "its edge",
-                        count_text(repairs.replaced, "normal is", "normals are")));
+        context.warn(fmt::format("{} turned because of an opposing triangle",
+                                 count_text(repairs.replaced, "normal is", "normals are")));
     if (repairs.bisected > 0)
         context.warn(
             fmt::format("{} bisected, because tetrahedra were inside out or too large there, or a crease left its edge",
@@ -231,9 +229,8 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
     if (result.loosened > 0) {
         const std::string text = fmt::format(
             "no smooth surface fits at {} of {} vertices: the surface follows the mesh at {} there", result.loosened,
-            counts.vertices + repairs.bisected, count_text(repairs.flattened, "triangle", "triangles"));
-        if (static_cast<double>(result.loosened) >
-            most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
+            result.mesh.positions.size(), count_text(repairs.flattened, "triangle", "triangles"));
+        if (static_cast<double>(result.loosened) > most_loosened * static_cast<double>(result.mesh.positions.size()))
             context.doubt(text);
         else
             context.warn(text);
@@ -276,7 +273,7 @@ void report(const APatchResult& result, Context& context) {
     count("inverted", result.inverted);
     context.metric("c1-jump", result.c1_jump, Unit::number);
     count("sign-violations", result.sign_violations);
-    count("refined", result.repairs.bisected);
+    count("refined", result.repairs.bisected + (result.joint_fit ? result.joint_fit->bisected : 0));
     count("split-faces", result.divided);
     count("raised", result.raised);
     count("creased-edges", result.repairs.creased);
@@ -292,11 +289,11 @@ void report(const APatchResult& result, Context& context) {
     count("left-out", result.left_out);
     context.metric("crease-max", result.crease_max, Unit::length);
     if (result.regularisation) context.metric("regularisation", *result.regularisation, Unit::number);
+    count("turned", result.repairs.replaced);
     if (!result.joint_fit) return;
     context.metric("weight", result.joint_fit->weight, Unit::number);
     context.metric("offset-rms", result.joint_fit->offset_rms, Unit::length);
     context.metric("offset-max", result.joint_fit->offset_max, Unit::length);
-    count("turned", result.repairs.replaced);
     count("flips", result.joint_fit->flips);
 }
 
@@ -340,7 +337,8 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     const bool is_automatic = params.normals == APatchParams::Normals::automatic;
     if (points && points->size() > 0 && params.fit) {
         const CornerNormals given = work.normals;
-        if (is_automatic) fit_normals(work, points->positions.span(), context);
+        if (is_automatic && (interpolates(params) || !work.mesh.sharp_edges.empty()))
+            fit_normals(work, points->positions.span(), context);
         if (!interpolates(params)) {
             restore_whole_sectors(work, given);
             result.joint_fit = fit_jointly(work, points->positions.span(), params.fairing, context);

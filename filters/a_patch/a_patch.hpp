@@ -106,9 +106,9 @@ struct APatchResult {
 ///       - The mesh is closed and inside out.
 /// Ties: among equally long edges, the one with the lower vertices is bisected first. Among equally acute edges, the
 /// one with the lower vertices becomes sharp. Bytes depend neither on the number of threads nor on the processor.
-/// Cost: linear. One thread takes 15 to 35 us and 4 kB per triangle; with creases that do not fit, up to 400 us per
-/// triangle. To locate and measure the points takes 5 us per point. A fit adds 15 us per point and 500 us per triangle;
-/// if it interpolates, 3 us per point and 120 to 540 us per triangle. Metrics: see plugin.cpp.
+/// Cost: linear without a fit. One thread takes 15 to 35 us and 4 kB per triangle; with creases that do not fit, up to
+/// 400 us per triangle. To locate and measure the points takes 5 us per point. A fit adds 15 us per point and 500 us
+/// per triangle; if it interpolates, 3 us per point and 120 to 540 us per triangle. Metrics: see plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);
 
 }  // namespace scanmill

@@ -79,6 +79,7 @@ public:
         start();
         for (int step = 0; step < first_steps; ++step) solve(first_weight);
         refine();
+        locate();
         linearise();
         result_.weight = best_weight() * fairing_;
         solve_linearised(result_.weight);
@@ -468,6 +469,7 @@ private:
 
     /// The unknowns that minimise the energy with one half of the points, or with both.
     Vector minimum(std::span<const std::size_t> halves, double weight) const {
+        if (unknowns_ == 0) return Vector();
         Sparse matrix = pattern_;
         Vector right = Vector::Zero(unknowns_);
         double count = 0;
@@ -487,7 +489,9 @@ private:
             Sparse with_ridge = matrix;
             for (u32 i = 0; i < unknowns_; ++i) with_ridge.coeffRef(i, i) += factor * of_ridge;
             solver.factorize(with_ridge);
-            if (solver.info() == Eigen::Success) return solver.solve(right);
+            if (solver.info() != Eigen::Success) continue;
+            const Vector found = solver.solve(right);
+            if (found.allFinite()) return found;
         }
         return Vector::Zero(unknowns_);  // rounding leaves nothing of triangles that are this thin
     }

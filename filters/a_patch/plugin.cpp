@@ -78,7 +78,9 @@ SCANMILL_FILTER() {
         .metric("sign-violations", Unit::count, "Edges, and weights over triangles, that allow a second sheet.",
                 smaller_is_better)
         .metric("refined", Unit::count,
-                "Edges bisected because tetrahedra were inside out or too large, or a crease left its edge.")
+                "Edges bisected because tetrahedra were inside out or too large, a crease left its edge, or the fit "
+                "was far from "
+                "the points.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
         .metric("smoothed-edges", Unit::count,
