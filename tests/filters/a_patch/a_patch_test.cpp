@@ -327,13 +327,13 @@ TEST(APatch, NormalsOfPoints_AreBetterThanThoseOfACoarseMesh) {
     EXPECT_LT(worst(&scan), 0.1 * worst(nullptr));
 }
 
-TEST(APatch, ANormalThatOpposesATriangle_IsReplaced) {
+TEST(APatch, ANormalThatOpposesATriangle_IsTurned) {
     const TriangleMesh mesh = geodesic_sphere(1, 2);
     std::vector<Vec3> normals(mesh.positions.begin(), mesh.positions.end());
     normals[7] = -normals[7];
     const PatchRun run = patched(with_normals(mesh, normals), Curvature::mean);
     EXPECT_EQ(run.result.repairs.replaced, 1u);
-    EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("1 normal is replaced")));
+    EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("1 normal is turned")));
     EXPECT_LT(worst_distance(run.result.patches, sphere_distance), 1e-14);
 }
 
