@@ -39,7 +39,7 @@ constexpr double most_left_out = 0.5;
 constexpr double most_unseen = 0.1;  // share of the vertices without points
 constexpr double rounding = 1e-12;  // share of the diagonal
 constexpr double least_regularisation = 1e-6;
-constexpr unsigned segments_for_bulge = 4;  // of a sharp edge, to measure `crease-max`
+constexpr unsigned segments_for_bulge = 4;  // that divide a sharp edge to measure `crease-max`
 
 std::string position_text(const TriangleMesh& mesh, u32 vertex) {
     const Vec3 p = mesh.frame.origin + mesh.positions[vertex];

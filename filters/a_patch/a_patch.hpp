@@ -38,7 +38,7 @@ struct APatchParams {
     Interpolate interpolate = Interpolate::automatic;
     /// A factor on the weight of the bending that the fit finds, at least 0.
     double fairing = 1;
-    /// Of a fit that interpolates: the smallest weight of the penalty on changes of the slopes, 1e-6 to 1.
+    /// If the fit interpolates: the smallest weight of the penalty on changes of the slopes, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// Height of an apex over its triangle, as a multiple of the smallest possible height; 1.05 to 3. A further 0.15
@@ -74,9 +74,9 @@ struct APatchResult {
     };
     std::optional<Distances> fit;  ///< distances of the points in tetrahedra; empty without points
     double crease_max = 0;  ///< the largest distance of a crease from its sharp edge
-    /// Of a fit that interpolates: the median over the edges of the weights used.
+    /// If the fit interpolates: the median over the edges of the weights used.
     std::optional<double> regularisation;
-    std::optional<a_patches::JointFit> joint_fit;  ///< of a fit that does not interpolate
+    std::optional<a_patches::JointFit> joint_fit;  ///< empty if nothing was fitted, or if the fit interpolates
 };
 
 /// Builds an implicit surface F = 0 through the vertices of a mesh. F is cubic in every tetrahedron, negative inside

@@ -33,7 +33,7 @@ FacetHeight::FacetHeight(const std::array<Vec3, 3>& corners) : origin_(corners[0
     std::array<double, 3> lengths;
     for (std::size_t i = 0; i < 3; ++i) lengths[i] = (corners_[next(i)] - corners_[i]).norm();
     const double around = lengths[0] + lengths[1] + lengths[2];
-    std::array<double, 3> share;  // of the base point
+    std::array<double, 3> share;  // the barycentric coordinates that give the base point
     for (std::size_t i = 0; i < 3; ++i) share[i] = lengths[next(i)] / around;
     base_ = share[0] * corners_[0] + share[1] * corners_[1] + share[2] * corners_[2];
     const double radius = cross(corners_[1] - corners_[0], corners_[2] - corners_[0]) / around;

@@ -251,7 +251,6 @@ private:
             }
         }
         first_.push_back(located_.size());
-        result_.left_out = points_.size() - located_.size();
     }
 
     double rms_distance() const {

@@ -10,11 +10,10 @@
 namespace scanmill::a_patches {
 
 struct JointFit {
-    double weight = 0;  ///< of the bending
+    double weight = 0;  ///< the bending's, beside the points
     double offset_rms = 0, offset_max = 0;  ///< of the vertices along their normals
     std::size_t flips = 0, bisected = 0;  ///< numbers of edges
     std::size_t unseen = 0;    ///< number of vertices without a point in their triangles
-    std::size_t left_out = 0;  ///< number of points that are too far from the mesh, or beyond its boundary
 };
 
 /// Makes the triangles even (make_even()), and bisects those that are far from their points, up to four times.

@@ -292,7 +292,7 @@ TEST(APatchSharp, AnEdgeWhoseSidesAgree_StaysWithinALine_AndIsSmoothAtItsEnd) {
     a_patches::Repairs repairs;
     a_patches::smooth_agreeing_edges(with_diagonal, repairs);
     EXPECT_EQ(repairs.smoothed, 0u) << "both ends of the diagonal are on lines that continue";
-    // Alone, the diagonal is no part of a line.
+    // Without the other edges, the diagonal is not in a line.
     for (const Edge& edge : edges)
         if (!std::ranges::binary_search(mesh.mesh.sharp_edges, edge)) with_diagonal.mesh.sharp_edges = {edge};
     a_patches::smooth_agreeing_edges(with_diagonal, repairs);
