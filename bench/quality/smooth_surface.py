@@ -18,6 +18,7 @@ import numpy
 BENCH = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
 
+import smooth_normals as truths  # noqa: E402
 from harness import machine  # noqa: E402
 from tables import options as options_of  # noqa: E402
 from tables import page, scanmill  # noqa: E402
@@ -25,6 +26,9 @@ from tables.ply import write_ply  # noqa: E402
 
 MODELS = {"kitten": "points_3/kitten.xyz", "bunny": "meshes/bunny00.off", "ball": "points_3/ball.ply",
           "armadillo": "meshes/armadillo.off"}
+#: Closed models of virtual scans, and the standard deviations of the noise in percent of the diagonal.
+ORGANIC = ("bear", "camel", "elephant", "hand", "homer")
+NOISES = (0, 0.015, 0.03)
 #: Largest errors of the light mesh, in percent of the diagonal.
 SHARES = (0.3, 0.1)
 #: Cells of APSS's marching cubes along the longest side.
@@ -48,6 +52,16 @@ normal between neighbours: for a-patch the metric `c1-jump`, for a mesh the 99 %
 neighbouring triangles. *VTK* is the {100 * MOST:g} % quantile of the values that VTK interpolates in the stored patches at
 {PLACES:,} vertices of the result of `tessellate`, in percent of the diagonal; the field is about the distance from the
 surface. Beside creases, where two functions hold, VTK takes any of them."""
+
+NORMALS = f"""\
+Models that Loop's rule subdivided to at least {truths.LEAST:,} triangles are scanned from 20 views (resolution 0.5 % of the
+diagonal). *dense* is the solid through all points, its vertices moved along the true normals by noise (standard deviation in
+percent of the diagonal). *light* is *dense* decimated within {SHARES[-1]} %, *a-patch* the surface fitted to the vertices of *dense*. *Patches* are triangles, for
+a-patch with the bisected ones. *mean* and *95 %* are angles to the true normals at {truths.SAMPLES:,} random
+points: of triangles, and for a-patch of the gradients at the vertices of a tessellation with 8 segments per edge. The
+column *of dense* is the mean as a share of the dense mesh's. *rms* is the distance of these points from the truth, in
+percent of the diagonal. *visible edges* bend by more than {truths.VISIBLE} degrees, in percent of all edges of the tessellation; in
+brackets with its vertices moved to the truth."""
 
 
 def run_ours(program, file, share, folder, limit):
@@ -161,9 +175,7 @@ def record_of(name, options):
                      "seconds": seconds + steps["surface"]["seconds"], "jump": f"{made['c1-jump']:.0e}",
                      "vtk": float(numpy.quantile(abs(values), MOST))})
     cloud = with_normals(points, files["solid"])
-    others = {f"PyMeshLab APSS, {RESOLUTION} cells": apss,
-              **{f"Open3D Poisson, depth {depth}": poisson(depth) for depth in DEPTHS}}
-    for title, make in others.items():
+    for title, make in others().items():
         begin = time.perf_counter()
         vertices, triangles = make(cloud)
         seconds = time.perf_counter() - begin
@@ -171,6 +183,110 @@ def record_of(name, options):
         rows.append({**distances(options.program, work / "other.ply", points_file, options.limit), "name": title,
                      "seconds": seconds, "jump": f"{angle_between_neighbours(vertices, triangles):.1f}°"})
     return {"name": name, "points": len(points), "diagonal": diagonal, "surfaces": rows}
+
+
+def solid_of_scan(program, truth, folder, limit):
+    """The solid through the points of a virtual scan without noise."""
+    import trimesh
+
+    folder.mkdir(parents=True, exist_ok=True)
+    model = folder / "model.ply"
+    write_ply(model, truth.mesh.vertices, truth.mesh.faces)
+    for workflow, scan, settings in ((BENCH.parent / "workflows" / "virtual-scans.yaml", model, {"noise": "0 %diag"}),
+                                     (BENCH / "quality" / "solid-of-scan.yaml", folder / "virtual-scans" / "model-default.ply", None)):
+        into = folder / workflow.stem
+        cell = scanmill.run(program, workflow, [scan], into, limit, settings=settings)["cells"][0]
+        if cell["outcome"] not in ("ok", "doubtful"):
+            raise scanmill.Broken(f"{workflow.name}: {cell.get('error', cell['outcome'])}")
+    return trimesh.load(scanmill.mesh(cell)["file"], process=False)
+
+
+def truth_records_of(name, options):
+    """By noise: the angles of all surfaces through a virtual scan of a model."""
+    import trimesh
+
+    truth = truths.Truth(options.data / "meshes" / f"{name}.off")
+    drawn = {}
+    work = options.program.resolve().parents[2] / "peers" / "smooth-surface" / name
+    solid = solid_of_scan(options.program, truth, work, options.limit)
+    records = []
+    for noise in NOISES:
+        points, share = truths.with_noise(truth, numpy.asarray(solid.vertices), noise / 100), SHARES[-1]
+        file = work / f"noise-{noise}.ply"
+        write_ply(file, points, solid.faces)
+        report = scanmill.run(options.program, BENCH / "quality" / "smooth-mesh.yaml", [file], work, options.limit,
+                              inputs={"scan": file}, settings={"max-error": f"{share} %diag"})
+        cell = report["cells"][0]
+        if cell["outcome"] not in ("ok", "doubtful"):
+            raise scanmill.Broken(cell.get("error", cell["outcome"]))
+        steps = scanmill.named(report, cell)
+        files = {"dense": file, **{pathlib.Path(one["file"]).stem.rsplit("-", 1)[-1]: one["file"]
+                                   for one in cell["outputs"]}}
+        meshes = {one: trimesh.load(files[one], process=False) for one in ("dense", "light", "smooth")}
+        rows = []
+        for title, one in (("dense", "dense"), (f"light, {share} %", "light"), (f"a-patch, {share} %", "smooth")):
+            mesh = meshes[one]
+            normals = numpy.asarray(mesh.vertex_normals) if one == "smooth" else None
+            patches = len(meshes["light" if one == "smooth" else one].faces)
+            if one == "smooth":
+                patches += 2 * int(steps["surface"]["metrics"]["refined"])  # a bisected edge adds two
+            rows.append({"name": title, "patches": patches,
+                         **truths.compared(truth, numpy.asarray(mesh.vertices), numpy.asarray(mesh.faces), normals)})
+        smooth = meshes["smooth"]
+        on_truth, _ = truth.nearest(smooth.vertices)
+        rows[-1].update({"visible": truths.share_of_visible_edges(smooth.vertices, smooth.faces),
+                         "visible-on-truth": truths.share_of_visible_edges(on_truth, smooth.faces),
+                         "seconds": steps["surface"]["seconds"]})
+        cloud = with_normals(points, files["dense"])
+        for title, make in others().items():
+            begin = time.perf_counter()
+            vertices, triangles = make(cloud)
+            rows.append({"name": title, "patches": len(triangles), "seconds": time.perf_counter() - begin,
+                         **truths.compared(truth, vertices, triangles)})
+        records.append({"name": name, "noise": noise, "points": len(points), "surfaces": rows})
+        drawn[noise] = files["smooth"]
+    folder = options.into / "smooth-surface"
+    folder.mkdir(exist_ok=True)
+    draw(options.program, [drawn[NOISES[0]], drawn[NOISES[-1]], work / "model.ply"], work / "model.ply",
+         folder / f"{name}.png", options.limit)
+    return records
+
+
+def draw(program, meshes, truth, into, limit):
+    """A picture with the reflection lines of meshes side by side."""
+    import open3d
+
+    pictures = []
+    for mesh in meshes:
+        folder = truth.parent / "drawn"
+        report = scanmill.run(program, BENCH / "quality" / "reflection-lines.yaml", [mesh], folder, limit,
+                              inputs={"truth": truth})
+        pictures.append(numpy.asarray(open3d.io.read_image(report["cells"][0]["outputs"][0]["file"])))
+    open3d.io.write_image(str(into), open3d.geometry.Image(numpy.ascontiguousarray(numpy.hstack(pictures))), 9)
+
+
+def others():
+    return {f"PyMeshLab APSS, {RESOLUTION} cells": apss,
+            **{f"Open3D Poisson, depth {depth}": poisson(depth) for depth in DEPTHS}}
+
+
+def lines_of_normals(records):
+    lines = ["## Normals", "", NORMALS, ""]
+    rows = []
+    for record in records:
+        dense = record["surfaces"][0]["angle"]
+        for row in record["surfaces"]:
+            visible = f"{row['visible']:.2f} ({row['visible-on-truth']:.2f})" if "visible" in row else ""
+            rows.append([record["name"], f"{record['noise']:g}", row["name"], f"{row['patches']:,}",
+                         f"{row['angle']:.2f}°", f"{row['angle95']:.2f}°", f"{row['angle'] / dense:.2f}",
+                         f"{100 * row['distance']:.4f}", visible,
+                         f"{row['seconds']:.2f}" if "seconds" in row else ""])
+    lines += page.table(["model", "noise", "surface", "patches", "mean", "95 %", "of dense", "rms", "visible edges",
+                         "seconds"], rows)
+    lines += ["", f"Reflection lines of the tessellations, without noise and with {NOISES[-1]} %, and of the truth:", ""]
+    for name in dict.fromkeys(record["name"] for record in records):
+        lines += [f"![{name}: both surfaces and the truth.](smooth-surface/{name}.png)", ""]
+    return lines
 
 
 def lines_of(results):
@@ -185,16 +301,19 @@ def lines_of(results):
               share(row["vtk"]) if "vtk" in row else "", row.get("unlocated", "")]
              for row in record["surfaces"]])
         lines.append("")
+    if results["truths"]:
+        lines += lines_of_normals(results["truths"])
     return [*lines, page.other_load(results["load"])]
 
 
 def main():
     parser = options_of.of_a_table("Compares smooth surfaces through scans.", None, 600, "quality")
     parser.add_argument("--models", default=",".join(MODELS), help="names, separated by commas (default: %(default)s)")
+    parser.add_argument("--organic", default=",".join(ORGANIC), help="models of virtual scans (default: %(default)s)")
     options = parser.parse_args()
     load = machine.Load()
     records, failed = [], []
-    for name in options.models.split(","):
+    for name in filter(None, options.models.split(",")):
         try:
             records.append(record_of(name, options))
         except scanmill.Broken as failure:
@@ -202,7 +321,14 @@ def main():
             continue
         failed += [f"{name}: VTK has {row['vtk']:.3g} on the surface {row['name']}"
                    for row in records[-1]["surfaces"] if row.get("vtk", 0) > LARGEST * records[-1]["diagonal"]]
-    results = {**page.described("make bench-quality"), "load": load.described(), "models": records}
+    of_truths = []
+    for name in filter(None, options.organic.split(",")):
+        try:
+            of_truths += truth_records_of(name, options)
+        except scanmill.Broken as failure:
+            failed.append(f"{name}: {failure}")
+    results = {**page.described("make bench-quality"), "load": load.described(), "models": records,
+               "truths": of_truths}
     lines = lines_of(results)
     print("\n".join(lines))
     page.write(options.into, "smooth-surface", results, lines)

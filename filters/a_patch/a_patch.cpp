@@ -39,12 +39,15 @@ constexpr double most_left_out = 0.5;
 constexpr double most_unseen = 0.1;  // share of the vertices without points
 constexpr double rounding = 1e-12;  // share of the diagonal
 constexpr double least_regularisation = 1e-6;
+constexpr int most_rounds = 6;  // of bisections for max-error
 constexpr unsigned segments_for_bulge = 4;  // that divide a sharp edge to measure `crease-max`
 
-std::string position_text(const TriangleMesh& mesh, u32 vertex) {
-    const Vec3 p = mesh.frame.origin + mesh.positions[vertex];
+std::string position_text(const TriangleMesh& mesh, const Vec3& position) {
+    const Vec3 p = mesh.frame.origin + position;
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
+
+std::string position_text(const TriangleMesh& mesh, u32 vertex) { return position_text(mesh, mesh.positions[vertex]); }
 
 // Refusals.
 
@@ -86,6 +89,9 @@ MeshTopology require_usable(const TriangleMesh& mesh, const APatchParams& params
         throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation)
             .hint(fmt::format("the default is {}; larger values are used where they predict the points better",
                               APatchParams().regularisation));
+    if (params.max_error && !(params.max_error->value() > 0))
+        throw Error("max-error must be above 0; it is {:g}", params.max_error->value())
+            .hint("leave it out to accept any distance");
     require_finite(mesh.positions.span(), "vertices");
     const Array<u32> opposites = half_edges::opposites(mesh);
     require_areas(mesh);
@@ -202,6 +208,23 @@ Weights fit_and_measure(Construction& construction, const PointCloud* points, co
     return weights;
 }
 
+/// Raises a doubt if the surface and the points are farther apart than max-error.
+void doubt_distances(const Certificate& certificate, double max_error, const TriangleMesh& mesh,
+                     const PointCloud& points, Context& context) {
+    const std::string unit(symbol(mesh.frame.unit));
+    if (certificate.beyond > 0)
+        context.doubt(fmt::format(
+            "{} of {} {} farther from the surface than max-error, {:.3g} {}; the farthest is {:.3g} "
+            "{} away, at {}",
+            certificate.beyond, count_text(points.size(), "point", "points"), by_count(certificate.beyond, "is", "are"),
+            max_error, unit, certificate.point.distance, unit, position_text(mesh, certificate.point.place)));
+    if (certificate.surface.distance > max_error)
+        context.doubt(fmt::format(
+            "at {} the surface is {:.3g} {} farther from the nearest point than the points from "
+            "each other; max-error is {:.3g} {}",
+            position_text(mesh, certificate.surface.place), certificate.surface.distance, unit, max_error, unit));
+}
+
 void warn_about(const APatchResult& result, std::span<const u32> crossing, const TriangleMesh& mesh,
                 const PointCloud* points, const MeshTopology& counts, const APatchParams& params, Context& context) {
     if (counts.boundary_edges > 0)
@@ -250,6 +273,7 @@ void warn_about(const APatchResult& result, std::span<const u32> crossing, const
             "no point is near {} of {} vertices: the surface there only continues its surroundings; scan the rest, or "
             "cut it off",
             result.joint_fit->unseen, result.mesh.positions.size()));
+    if (result.certificate) doubt_distances(*result.certificate, params.max_error->value(), mesh, *points, context);
     if (!crossing.empty())
         context.doubt(fmt::format("parts of the surface intersect at {}, because the mesh intersects itself there",
                                   count_text(crossing.size(), "triangle", "triangles")));
@@ -286,6 +310,11 @@ void report(const APatchResult& result, Context& context) {
         context.metric("fit-p95", result.fit->p95, Unit::length);
         context.metric("fit-max", result.fit->max, Unit::length);
     }
+    if (result.certificate) {
+        context.metric("error", std::max(result.certificate->point.distance, result.certificate->surface.distance),
+                       Unit::length);
+        count("beyond", result.certificate->beyond);
+    }
     count("left-out", result.left_out);
     context.metric("crease-max", result.crease_max, Unit::length);
     if (result.regularisation) context.metric("regularisation", *result.regularisation, Unit::number);
@@ -317,6 +346,10 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     if (mesh.triangles.empty())
         throw Error("needs a mesh with triangles; it has {} vertices and no triangles", mesh.positions.size());
     const MeshTopology counts = require_usable(mesh, params);
+    if (params.max_error && (!points || points->size() == 0))
+        throw Error("max-error needs points, and {}",
+                    points ? "the input `points` is empty" : "the input `points` is not wired")
+            .hint("wire the scan: 'in: {points: scan}', or leave max-error out");
     if (points) {
         require_finite(points->positions.span());
         require_same_frame(points->frame, "the points are", mesh.frame, "the mesh");
@@ -332,8 +365,9 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     work.normals = corner_normals(with_columns, points, params, context);
     context.progress(0.2);
 
-    Construction construction(work, {params.apex_factor, params.split, params.curvature}, context);
-    construction.prepare();
+    const ConstructionParams of_construction{params.apex_factor, params.split, params.curvature};
+    Construction prepared(work, of_construction, context);
+    prepared.prepare();
     const bool is_automatic = params.normals == APatchParams::Normals::automatic;
     if (points && points->size() > 0 && params.fit) {
         const CornerNormals given = work.normals;
@@ -342,15 +376,36 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         if (!interpolates(params)) {
             restore_whole_sectors(work, given);
             result.joint_fit = fit_jointly(work, points->positions.span(), params.fairing, context);
-            construction.prepare_normals();
+            prepared.prepare_normals();
         }
     }
-    construction.run();
+    std::optional<Construction> constructed;
+    Weights weights;
+    for (int round = 0;; ++round) {
+        const PatchMesh fitted = work;
+        constructed.emplace(work, of_construction, context);
+        constructed->repairs = prepared.repairs;
+        constructed->run();
+        assert(constructed->hull.faults.inverted.empty());
+        context.progress(0.5);
+        weights = fit_and_measure(*constructed, points, params, result, context);
+        if (!params.max_error) break;
+        const std::span<const Vec3> positions = points->positions.span();
+        const double limit = params.max_error->value();
+        const PatchDistances distances = distances_to_patches(weights.patches, positions, context);
+        const PointTree tree(positions, context.threads());
+        result.certificate =
+            certify(weights.patches, distances, positions, tree, counts.boundary_edges == 0, limit, context);
+        if (!result.joint_fit || round == most_rounds) break;
+        const std::vector<u32> far = far_triangles(fitted.mesh, distances, tree, limit, context);
+        if (far.empty()) break;
+        work = fitted;
+        result.joint_fit = fit_refined(work, far, positions, *result.joint_fit, context);
+        prepared.prepare_normals();
+    }
+    Construction& construction = *constructed;
     const Hull& hull = construction.hull;
     result.repairs = construction.repairs;
-    assert(hull.faults.inverted.empty());
-    context.progress(0.5);
-    Weights weights = fit_and_measure(construction, points, params, result, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);

@@ -7,10 +7,12 @@
 
 #include <optional>
 
+#include "a_patch/certificate.hpp"
 #include "a_patch/joint_fit.hpp"
 #include "a_patch/repair.hpp"
 #include "a_patch/weights.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
 
 namespace scanmill {
@@ -38,6 +40,9 @@ struct APatchParams {
     Interpolate interpolate = Interpolate::automatic;
     /// A factor on the weight of the bending that the fit finds, at least 0.
     double fairing = 1;
+    /// The largest distance between the surface and the points that is not doubtful, above 0. A fit that does not
+    /// interpolate also bisects triangles until the points are within it. If absent, it is not checked.
+    std::optional<Length> max_error;
     /// If the fit interpolates: the smallest weight of the penalty on changes of the slopes, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
@@ -73,6 +78,7 @@ struct APatchResult {
         double rms_to_mesh = 0;  ///< distance of the same points from `mesh`
     };
     std::optional<Distances> fit;  ///< distances of the points in tetrahedra; empty without points
+    std::optional<a_patches::Certificate> certificate;  ///< with `max_error`
     double crease_max = 0;  ///< the largest distance of a crease from its sharp edge
     /// If the fit interpolates: the median over the edges of the weights used.
     std::optional<double> regularisation;
@@ -101,6 +107,8 @@ struct APatchResult {
 ///       - `sign_violations` is not 0.
 ///       - The points are farther from the surface than from the mesh (rms), or more than half of them are left out.
 ///       - More than a tenth of the vertices have no point in their triangles, in a fit that moves vertices.
+///       - A point is farther from the surface than `max_error`, or the surface from the points by more than their
+///         spacing.
 ///       - The surface intersects itself, because the mesh does.
 ///       - The surface follows the mesh at more than a tenth of the vertices.
 ///       - The mesh is closed and inside out.

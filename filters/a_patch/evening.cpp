@@ -227,7 +227,13 @@ void move_vertices(PatchMesh& mesh, const std::vector<bool>& is_free, const Poin
         for (std::size_t i = 0; i < before.size(); ++i) {
             const u32 f = around[v][i];
             const Vec3 after = unit_normal(positions, triangles[f]);
-            if (after.dot(before[i]) >= least_turn_cosine && after.dot(turned) >= least_normal_cosine) continue;
+            bool fits = after.dot(before[i]) >= least_turn_cosine;
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const Vec3& there = triangles[f][corner] == v ? turned : mesh.normals[f][corner];
+                fits = fits && (there == Vec3::Zero() ||
+                                after.dot(there) >= std::min(least_normal_cosine, before[i].dot(there)));
+            }
+            if (fits) continue;
             positions[v] = old;
             break;
         }

@@ -25,8 +25,9 @@ std::size_t flip_edges(PatchMesh& mesh, const std::vector<bool>& is_fixed, doubl
 
 /// Flips edges, then moves every free vertex half of the way to the middle of its triangles and back to the nearest
 /// points; twice. The triangles' centroids are weighted by the square roots of the areas. A vertex stays if one of its
-/// triangles would turn by more than 60 degrees, or if no point is within a mean edge of it. A moved vertex has the
-/// normal that the mesh had there. Returns the number of flips. Pre: at least one point.
+/// triangles would turn by more than 60 degrees, or to more than 73 degrees from the normal at one of its corners, or
+/// if no point is within a mean edge of it. A moved vertex has the normal that the mesh had there. Returns the number
+/// of flips. Pre: at least one point.
 std::size_t make_even(PatchMesh& mesh, const std::vector<bool>& is_free, const std::vector<bool>& is_fixed,
                       const PointTree& points, double most_sag, Execution& execution);
 

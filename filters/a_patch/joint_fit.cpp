@@ -13,6 +13,7 @@
 #include "a_patch/outliers.hpp"
 #include "a_patch/refinement.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/base/statistics.hpp"
 #include "scanmill/data/half_edges.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/spatial/lists.hpp"
@@ -40,9 +41,10 @@ constexpr double most_outside = 0.3;            // barycentric, of the foot of a
 constexpr double most_turn = 0.5, most_offset = 0.3;  // radians, and multiples of h
 constexpr double least_turned_cosine = 0.5, least_normal_cosine = 0.25;
 constexpr int most_halvings = 7, most_attempts = 3, most_refinements = 4;
-// A triangle is far from its points if this share of them, and at least so many, are.
-constexpr double far_share = 0.25;
-constexpr std::size_t least_far = 3;
+// A triangle is too coarse if it has at least so many points, and their rms distance is larger than this multiple of
+// the median triangle's and than this share of the mesh's.
+constexpr std::size_t least_points = 8;
+constexpr double coarse_factor = 1.5, coarse_share = 0.05;
 constexpr double sag_per_rms = 2.5;  // a mesh decimated within a distance has about 0.4 of it as rms distance
 constexpr double enough = 1e-4;      // radians; steps end when no normal turns more
 
@@ -74,15 +76,35 @@ public:
     JointFit fit() {
         locate();
         if (located_.empty()) return result_;
-        most_sag_ = sag_per_rms * rms_distance();
+        rms_of_mesh_ = rms_distance();
+        most_sag_ = sag_per_rms * rms_of_mesh_;
         result_.flips = make_even(mesh_, free_unfixed(), is_fixed_, tree_, most_sag_, execution_);
         start();
         for (int step = 0; step < first_steps; ++step) solve(first_weight);
-        refine();
+        result_.flips += flip_edges_again();
+        start();
+        solve(first_weight);
         locate();
         linearise();
         result_.weight = best_weight() * fairing_;
         solve_linearised(result_.weight);
+        for (int round = 0; round < most_refinements; ++round) {
+            const std::vector<u32> coarse = coarse_facets();
+            if (coarse.empty()) break;
+            refine(coarse);
+        }
+        for (int step = 1; step < last_steps && largest_turn_ > enough; ++step) solve(result_.weight);
+        finish();
+        return result_;
+    }
+
+    /// Bisects triangles of a mesh that was fitted, and fits it with the same weight.
+    JointFit fit_again(const JointFit& before, std::span<const u32> triangles) {
+        result_ = before;
+        offsets_ = before.offsets;
+        locate();
+        most_sag_ = sag_per_rms * rms_distance();
+        refine(triangles);
         for (int step = 1; step < last_steps && largest_turn_ > enough; ++step) solve(result_.weight);
         finish();
         return result_;
@@ -94,17 +116,11 @@ private:
         bool is_smooth;
     };
 
-    /// Bisects triangles that are far from their points, flips edges, and fits again, until no triangle is far.
-    void refine() {
-        for (int round = 0; round < most_refinements; ++round) {
-            const std::vector<u32> far = far_facets();
-            const std::size_t bisected = bisect(mesh_, far), flips = flip_edges_again();
-            result_.bisected += bisected;
-            result_.flips += flips;
-            if (bisected + flips > 0) start();
-            solve(first_weight);
-            if (bisected == 0) break;
-        }
+    void refine(std::span<const u32> triangles) {
+        result_.bisected += bisect(mesh_, triangles);
+        result_.flips += flip_edges_again();
+        start();
+        solve(result_.weight);
     }
 
     std::size_t flip_edges_again() {
@@ -112,23 +128,30 @@ private:
         return flip_edges(mesh_, is_fixed_, most_sag_);
     }
 
-    /// Triangles of which many points are farther from the surface than the mesh was from them. Single ones are
-    /// outliers.
-    std::vector<u32> far_facets() {
+    /// Triangles whose points have a larger rms distance from the surface than those of most triangles have: they are
+    /// too large for the shape there. On exactly flat faces most distances are 0, so a share of the mesh's counts, too.
+    std::vector<u32> coarse_facets() {
         locate();
         const std::vector<double> residuals = residuals_of_points();
-        std::vector<u32> far;
-        for (u32 f = 0; f + 1 < first_.size(); ++f) {
-            std::size_t beyond = 0, count = 0;
+        std::vector<double> rms(mesh_.mesh.triangles.size(), 0), known;
+        for (u32 f = 0; f < rms.size(); ++f) {
+            std::size_t count = 0;
+            double squares = 0;
             for (std::size_t i = first_[f]; i < first_[f + 1]; ++i) {
                 if (residuals[i] == no_distance) continue;
                 ++count;
-                beyond += residuals[i] > most_sag_;
+                squares += residuals[i] * residuals[i];
             }
-            if (beyond >= least_far && static_cast<double>(beyond) > far_share * static_cast<double>(count))
-                far.push_back(f);
+            if (count < least_points) continue;
+            rms[f] = std::sqrt(squares / static_cast<double>(count));
+            known.push_back(rms[f]);
         }
-        return far;
+        if (known.empty()) return {};
+        const double limit = std::max(coarse_share * rms_of_mesh_, coarse_factor * quantile(known, 0.5));
+        std::vector<u32> coarse;
+        for (u32 f = 0; f < rms.size(); ++f)
+            if (rms[f] > limit) coarse.push_back(f);
+        return coarse;
     }
 
     // State.
@@ -628,11 +651,13 @@ private:
                                     bends_[e]);
         }
         double squares = 0;
+        result_.offset_max = 0;
         for (const double offset : offsets_) {
             squares += offset * offset;
             result_.offset_max = std::max(result_.offset_max, std::abs(offset));
         }
         result_.offset_rms = std::sqrt(squares / static_cast<double>(offsets_.size()));
+        result_.offsets = offsets_;
     }
 
     PatchMesh& mesh_;
@@ -642,7 +667,7 @@ private:
     double fairing_;
     Execution& execution_;
     JointFit result_;
-    double most_sag_ = 0, squared_distances_ = 0;
+    double rms_of_mesh_ = 0, most_sag_ = 0, squared_distances_ = 0;
 
     Sectors sectors_;
     std::vector<std::vector<u32>> corners_;
@@ -679,18 +704,33 @@ bool fix_crossing(const TriangleMesh& mesh, std::vector<bool>& is_fixed, Executi
     return has_new;
 }
 
-}  // namespace
-
-JointFit fit_jointly(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution) {
+/// Fits the mesh with `fit`; where triangles intersect, their corners are fixed and it is repeated.
+template <class Fit>
+JointFit fit_without_crossing(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution,
+                              Fit&& fit) {
     const PointTree tree(points, execution.threads());
     std::vector<bool> is_fixed(mesh.mesh.positions.size(), false);
+    fix_crossing(mesh.mesh, is_fixed, execution);
     for (int attempt = 1;; ++attempt) {
         PatchMesh fitted = mesh;
-        const JointFit result = JointFitter(fitted, points, tree, is_fixed, fairing, execution).fit();
+        JointFitter fitter(fitted, points, tree, is_fixed, fairing, execution);
+        const JointFit result = fit(fitter);
         if (fix_crossing(fitted.mesh, is_fixed, execution) && attempt < most_attempts) continue;
         mesh = std::move(fitted);
         return result;
     }
+}
+
+}  // namespace
+
+JointFit fit_jointly(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution) {
+    return fit_without_crossing(mesh, points, fairing, execution, [](JointFitter& fitter) { return fitter.fit(); });
+}
+
+JointFit fit_refined(PatchMesh& mesh, std::span<const u32> triangles, std::span<const Vec3> points,
+                     const JointFit& before, Execution& execution) {
+    return fit_without_crossing(mesh, points, 1, execution,
+                                [&](JointFitter& fitter) { return fitter.fit_again(before, triangles); });
 }
 
 }  // namespace scanmill::a_patches

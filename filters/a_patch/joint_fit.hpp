@@ -14,10 +14,10 @@ struct JointFit {
     double offset_rms = 0, offset_max = 0;  ///< of the vertices along their normals
     std::size_t flips = 0, bisected = 0;  ///< numbers of edges
     std::size_t unseen = 0;    ///< number of vertices without a point in their triangles
+    std::vector<double> offsets;  ///< of the vertices along their normals
 };
 
-/// Makes the triangles even (make_even()), and bisects those that are far from their points, up to four times.
-/// Minimises
+/// Makes the triangles even (make_even()), then minimises
 ///     A / n · sum over the points of omega (distance from the surface)²  +  weight · h⁴ · integral of |H|²
 /// over the offsets of the vertices along their normals, two turns of every normal, and one slope per edge. A is the
 /// area of the mesh, h² = 4 A / (sqrt(3) · number of triangles), and H has the second derivatives of the surface's
@@ -26,6 +26,10 @@ struct JointFit {
 /// The weight is a power of the square root of 10, from 1e-6 to 1: the one with which the surface fitted to one half of
 /// the points is nearest to the other half. Cubic cells of edge h are in one half, so that correlated noise does not
 /// count as shape.
+///
+/// A triangle is too coarse for the shape if its points have an rms distance of more than 1.5 times that of the median
+/// triangle, and of more than a twentieth of their rms distance from the mesh. Such triangles are bisected and the fit
+/// is repeated, up to four times. On clean scans there are up to 30 % more edges then, on noisy ones few.
 ///
 /// Vertices on sharp edges and on the boundary, without normal, or without a point in their triangles keep their
 /// places. Normals beside sharp edges stay, so that creases do. Steps that would fold triangles are shortened.
@@ -36,5 +40,10 @@ struct JointFit {
 /// not depend on the number of threads. Cost: about 500 us per triangle and 15 us per point,
 /// a little more than linear; up to three times as much if triangles intersect.
 JointFit fit_jointly(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution);
+
+/// Bisects triangles of a mesh that fit_jointly() fitted, and repeats the fit with the same weight. Returns the numbers
+/// of both fits.
+JointFit fit_refined(PatchMesh& mesh, std::span<const u32> triangles, std::span<const Vec3> points,
+                     const JointFit& before, Execution& execution);
 
 }  // namespace scanmill::a_patches

@@ -8,7 +8,7 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 8)
+    return Declare<P>("a-patch", 9)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
@@ -54,6 +54,11 @@ SCANMILL_FILTER() {
         .param("fairing", &P::fairing,
                "A factor on the weight of the surface's bending that the fit finds. Larger values make it smoother.",
                at_least(0))
+        .param("max-error", &P::max_error,
+               "Largest distance between the surface and the points. The fit bisects triangles until the points are "
+               "within it, unless the surface passes through the vertices. If points stay farther away, the result is "
+               "doubtful. `none`: any distance is accepted.",
+               word("none"))
         .param("regularisation", &P::regularisation,
                "With `interpolate: yes`: smallest penalty on changes of the edge gradients, relative to the points. An "
                "edge "
@@ -101,6 +106,11 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("fit-p95", Unit::length, "95 % quantile of the points' distances from the surface.", smaller_is_better)
         .metric("fit-max", Unit::length, "Largest distance of a point from the surface.", smaller_is_better)
+        .metric("error", Unit::length,
+                "With max-error: largest distance between the surface and all points, in both directions. That from "
+                "the surface to the nearest point is less the distance of that point from its 6th neighbour.",
+                smaller_is_better)
+        .metric("beyond", Unit::count, "With max-error: points farther from the surface.", smaller_is_better)
         .metric("left-out", Unit::count, "Points in no tetrahedron; they are neither fitted nor measured.",
                 smaller_is_better)
         .metric("crease-max", Unit::length,

@@ -60,14 +60,10 @@ private:
 
 }  // namespace
 
-PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context) {
-    if (patches.tets.empty()) throw Error("the patches have no tetrahedra").hint("'a-patch' makes patches of a mesh");
-    if (points.size() == 0) throw Error("needs points; there are none").hint("wire the scan: 'in: {points: scan}'");
-    require_finite(points.positions.span());
-    require_same_frame(points.frame, "the points are", patches.frame, "the patches");
-    const PatchSurface surface(patches, context.threads());
-    const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, context);
-    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
+PatchDistances distances_to_patches(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution) {
+    const PatchSurface surface(patches, execution.threads());
+    const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, execution);
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), execution.threads());
     const Boundary boundary(mesh);
     const bool is_closed = boundary.is_empty();
     const double limit = farthest * surface_box(mesh).diagonal();
@@ -77,11 +73,11 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
         return (point - nearest).dot(area_vector(mesh.positions, mesh.triangles[triangle])) < 0;
     };
     Array<double> distances(points.size());
-    for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        context.check_cancelled();
+    for_each_chunk(execution.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
         u32 hint = NearestTriangle::none;
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3& p = points.positions[i];
+            const Vec3& p = points[i];
             distances[i] = std::nan("");
             const NearestTriangle nearest = tree.nearest(p, hint);
             hint = nearest.slot;
@@ -93,6 +89,15 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
                 distances[i] = (is_inside(p, start, nearest.triangle) ? -1 : 1) * (p - start).norm();
         }
     });
+    return {std::move(distances), limit};
+}
+
+PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context) {
+    if (patches.tets.empty()) throw Error("the patches have no tetrahedra").hint("'a-patch' makes patches of a mesh");
+    if (points.size() == 0) throw Error("needs points; there are none").hint("wire the scan: 'in: {points: scan}'");
+    require_finite(points.positions.span());
+    require_same_frame(points.frame, "the points are", patches.frame, "the patches");
+    auto [distances, limit] = distances_to_patches(patches, points.positions.span(), context);
     PatchDistanceResult result;
     std::vector<double> found;
     double squares = 0;

@@ -2,6 +2,8 @@
 #pragma once
 /// Measures the signed distance of points to a surface of A-patches.
 
+#include <span>
+
 #include "scanmill/data/patches.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/context.hpp"
@@ -20,6 +22,11 @@ struct PatchDistanceResult {
     std::size_t unlocated = 0;
 };
 
+struct PatchDistances {
+    Array<double> of_points;  ///< positive outside, negative inside; NaN for a point without a distance
+    double limit = 0;  ///< points farther away have no distance: a tenth of the surface's diagonal
+};
+
 /// Measures the signed distance of every point to the nearest point of the surface, exact to rounding.
 ///
 /// Newton's method (PatchSurface::foot()) starts at the nearest point of a tessellation with 2 segments per edge. If
@@ -27,11 +34,17 @@ struct PatchDistanceResult {
 /// either of them. Near ends of creases, and between faces that have no tetrahedra between them, the result is the
 /// distance to the tessellation. On an open surface, such a distance has the sign of the nearest triangle's side.
 ///
+/// Pre: finite points in the frame of the patches, and at least one tetrahedron. Throws Error if tetrahedra of a
+/// triangle are missing. Bytes do not depend on the number of threads. Cost: about 7 us per point near the surface, and
+/// 20 us per triangle of the mesh.
+PatchDistances distances_to_patches(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution);
+
+/// Measures the signed distance of every point to the surface; see distances_to_patches().
+///
 /// Pre:  finite points in the frame of the patches. Throws Error otherwise, if `points` or `patches` is empty, if
 ///       tetrahedra of a triangle are missing, or if every point is far from the surface.
 /// Post: p95 is the smallest unsigned distance that at least 95 % of the located points do not exceed. Bytes do not
 ///       depend on the number of threads. Warns of unlocated points.
-/// Cost: about 7 us per point near the surface, and 20 us per triangle of the mesh.
 /// Metrics: `rms`, `p95`, `max`, `unlocated`.
 PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context);
 
