@@ -5,7 +5,7 @@ The truth is a mesh that Loop's rule has subdivided, with vertex normals interpo
 """
 import numpy
 
-#: Triangles of a subdivided model, at least.
+#: Minimum number of triangles of a subdivided model.
 LEAST = 150_000
 SAMPLES = 15_000
 #: Degrees beyond which an edge bends visibly.
@@ -39,7 +39,7 @@ class Truth:
 
 
 def share_of_visible_edges(vertices, triangles):
-    """Of all edges between two triangles, in percent."""
+    """Share of the edges that bend visibly, in percent."""
     import trimesh
 
     angles = trimesh.Trimesh(vertices, triangles, process=False).face_adjacency_angles
@@ -47,8 +47,8 @@ def share_of_visible_edges(vertices, triangles):
 
 
 def compared(truth, vertices, triangles, normals=None):
-    """Angles to the true normals and distances from the truth at random points of a mesh. Without normals by vertex, the
-    triangles' count."""
+    """Angles to the true normals and distances from the truth at random points of a mesh. Without vertex
+    normals, the triangles' are used."""
     import trimesh
 
     triangles = triangles[numpy.isfinite(vertices[triangles]).all(axis=(1, 2))]

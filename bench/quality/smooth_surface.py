@@ -47,7 +47,7 @@ with {RESOLUTION} cells along the longest side, Open3D's Poisson runs with two d
 with correct signs, which a scan without its scanner's positions does not have.
 
 *rms*, *95 %* and *largest* are distances of the scan's points from the surface, in percent of the diagonal. *patches*
-counts triangles of the light mesh for ours, triangles of the result for the others. *jump* is the largest change of the
+counts triangles of the mesh for ours, with the bisected ones, and triangles of the result for the others. *jump* is the largest change of the
 normal between neighbours: for a-patch the metric `c1-jump`, for a mesh the 99 % quantile of the angles between
 neighbouring triangles. *VTK* is the {100 * MOST:g} % quantile of the values that VTK interpolates in the stored patches at
 {PLACES:,} vertices of the result of `tessellate`, in percent of the diagonal; the field is about the distance from the
@@ -171,7 +171,8 @@ def record_of(name, options):
         smooth = numpy.asarray(trimesh.load(files["smooth"], process=False).vertices)
         values = vtk_values(files["patches"], smooth[:: max(1, len(smooth) // PLACES)])
         rows.append({"name": f"a-patch, {share} %", "rms": found["rms"], "p95": found["p95"], "max": found["max"],
-                     "unlocated": int(found["unlocated"]), "patches": int(light["patches"]), "closed": True,
+                     "unlocated": int(found["unlocated"]), "closed": True,
+                     "patches": int(light["patches"]) + 2 * int(made["refined"]),  # a bisected edge adds two
                      "seconds": seconds + steps["surface"]["seconds"], "jump": f"{made['c1-jump']:.0e}",
                      "vtk": float(numpy.quantile(abs(values), MOST))})
     cloud = with_normals(points, files["solid"])

@@ -193,7 +193,7 @@ Weights fit_and_measure(Construction& construction, const PointCloud* points, co
         weights = std::move(fitted.weights);
         result.regularisation = fitted.regularisation;
     }
-    context.progress(0.8);
+    result.fit.reset();
     if (located.points.empty()) return weights;
     PointDistances found = distances(hull, weights.patches, positions, located, context);
     const auto count = static_cast<double>(located.points.size());
@@ -217,12 +217,12 @@ void doubt_distances(const Certificate& certificate, double max_error, const Tri
             "{} of {} {} farther from the surface than max-error, {:.3g} {}; the farthest is {:.3g} "
             "{} away, at {}",
             certificate.beyond, count_text(points.size(), "point", "points"), by_count(certificate.beyond, "is", "are"),
-            max_error, unit, certificate.point.distance, unit, position_text(mesh, certificate.point.place)));
+            max_error, unit, certificate.point.distance, unit, position_text(mesh, certificate.point.position)));
     if (certificate.surface.distance > max_error)
         context.doubt(fmt::format(
             "at {} the surface is {:.3g} {} farther from the nearest point than the points from "
             "each other; max-error is {:.3g} {}",
-            position_text(mesh, certificate.surface.place), certificate.surface.distance, unit, max_error, unit));
+            position_text(mesh, certificate.surface.position), certificate.surface.distance, unit, max_error, unit));
 }
 
 void warn_about(const APatchResult& result, std::span<const u32> crossing, const TriangleMesh& mesh,
@@ -368,6 +368,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     const ConstructionParams of_construction{params.apex_factor, params.split, params.curvature};
     Construction prepared(work, of_construction, context);
     prepared.prepare();
+    const std::size_t turned_before = prepared.repairs.replaced;
     const bool is_automatic = params.normals == APatchParams::Normals::automatic;
     if (points && points->size() > 0 && params.fit) {
         const CornerNormals given = work.normals;
@@ -381,26 +382,31 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     }
     std::optional<Construction> constructed;
     Weights weights;
+    std::optional<PointTree> tree;
+    if (params.max_error) tree.emplace(points->positions.span(), context.threads());
     for (int round = 0;; ++round) {
         const PatchMesh fitted = work;
         constructed.emplace(work, of_construction, context);
         constructed->repairs = prepared.repairs;
         constructed->run();
         assert(constructed->hull.faults.inverted.empty());
-        context.progress(0.5);
+        if (round == 0) context.progress(0.5);
         weights = fit_and_measure(*constructed, points, params, result, context);
         if (!params.max_error) break;
         const std::span<const Vec3> positions = points->positions.span();
-        const double limit = params.max_error->value();
+        const double max_error = params.max_error->value();
         const PatchDistances distances = distances_to_patches(weights.patches, positions, context);
-        const PointTree tree(positions, context.threads());
+        const std::optional<Certificate> before = result.certificate;
         result.certificate =
-            certify(weights.patches, distances, positions, tree, counts.boundary_edges == 0, limit, context);
-        if (!result.joint_fit || round == most_rounds) break;
-        const std::vector<u32> far = far_triangles(fitted.mesh, distances, tree, limit, context);
+            certify(weights.patches, distances, positions, *tree, counts.boundary_edges == 0, max_error, context);
+        const bool is_nearer = !before || result.certificate->beyond < before->beyond ||
+                               result.certificate->point.distance < before->point.distance;
+        if (!result.joint_fit || round == most_rounds || !is_nearer) break;
+        const std::vector<u32> far = far_triangles(fitted.mesh, distances, *tree, max_error, context);
         if (far.empty()) break;
         work = fitted;
         result.joint_fit = fit_refined(work, far, positions, *result.joint_fit, context);
+        prepared.repairs.replaced = turned_before;
         prepared.prepare_normals();
     }
     Construction& construction = *constructed;

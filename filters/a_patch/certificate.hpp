@@ -13,27 +13,29 @@ namespace scanmill::a_patches {
 struct Certificate {
     struct Farthest {
         double distance = 0;
-        Vec3 place = Vec3::Zero();
+        Vec3 position = Vec3::Zero();
     };
     Farthest point;  ///< the point that is farthest from the surface
-    std::size_t beyond = 0;  ///< number of points farther from the surface than the limit
-    /// The place on the surface that is farthest from the points. Its distance is that from the nearest point, less the
-    /// distance of that point from its 6th neighbour; 0 if this is negative.
+    std::size_t beyond = 0;  ///< number of points farther from the surface than max-error
+    /// The position on the surface that is farthest from the points. Its distance is that from the nearest point, less
+    /// the distance of that point from its 6th neighbour; 0 if this is negative.
     Farthest surface;
 };
 
-/// `distances` are those of distances_to_patches() by point. Measures the surface at the vertices of a tessellation
-/// with 4 segments per edge. A point without a distance counts as the farthest distance that is measured, if the
-/// surface is closed; else it does not count, as it is beside the boundary. Pre: at least one point. Ties: the first
-/// point or vertex. Bytes do not depend on the number of threads. Cost: about 50 us per triangle of the mesh.
+/// `distances` are those of distances_to_patches() by point. A point without one is measured from a tessellation with 4
+/// segments per edge; if it is beside the boundary of an open surface, it does not count. The surface is measured at
+/// the vertices of that tessellation. Pre: at least one point; `tree` contains the points. Ties: the first point or
+/// vertex. Bytes do not depend on the number of threads. Cost: about 50 us per triangle of the mesh.
 Certificate certify(const PatchComplex& patches, const PatchDistances& distances, std::span<const Vec3> points,
-                    const PointTree& tree, bool is_closed, double limit, Execution& execution);
+                    const PointTree& tree, bool is_closed, double max_error, Execution& execution);
 
-/// Triangles nearest to a point that is farther from the surface than `limit` and than three standard deviations of the
-/// noise; ascending. The nearest other point must be on the same side, at least half as far: a single point is an
-/// outlier. The noise follows from the differences between the distances of neighbours, since what a surface misses is
-/// nearly equal at both.
+/// Triangles nearest to a point that is farther from the surface than `max_error` and than five standard deviations of
+/// the noise; ascending. Points farther away than the longest edge of their triangle do not count. The nearest other
+/// point must be on the same side, at least half as far: a single point is an outlier. The noise follows from the
+/// differences between the distances of neighbours, since what a surface misses is nearly equal at both. `mesh` is the
+/// one over which the patches were built, before its repair. Points without a distance do not count. Bytes do not
+/// depend on the number of threads. Cost: about 1 us per point.
 std::vector<u32> far_triangles(const TriangleMesh& mesh, const PatchDistances& distances, const PointTree& tree,
-                               double limit, Execution& execution);
+                               double max_error, Execution& execution);
 
 }  // namespace scanmill::a_patches

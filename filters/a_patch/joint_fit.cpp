@@ -45,6 +45,7 @@ constexpr int most_halvings = 7, most_attempts = 3, most_refinements = 4;
 // the median triangle's and than this share of the mesh's.
 constexpr std::size_t least_points = 8;
 constexpr double coarse_factor = 1.5, coarse_share = 0.05;
+constexpr double rounding = 1e-9;  // as a share of h; flat faces are exact
 constexpr double sag_per_rms = 2.5;  // a mesh decimated within a distance has about 0.4 of it as rms distance
 constexpr double enough = 1e-4;      // radians; steps end when no normal turns more
 
@@ -103,6 +104,7 @@ public:
         result_ = before;
         offsets_ = before.offsets;
         locate();
+        if (located_.empty()) return result_;
         most_sag_ = sag_per_rms * rms_distance();
         refine(triangles);
         for (int step = 1; step < last_steps && largest_turn_ > enough; ++step) solve(result_.weight);
@@ -133,6 +135,7 @@ private:
     std::vector<u32> coarse_facets() {
         locate();
         const std::vector<double> residuals = residuals_of_points();
+        const std::vector<double> most = outlier_limits(residuals);
         std::vector<double> rms(mesh_.mesh.triangles.size(), 0), known;
         for (u32 f = 0; f < rms.size(); ++f) {
             std::size_t count = 0;
@@ -140,14 +143,16 @@ private:
             for (std::size_t i = first_[f]; i < first_[f + 1]; ++i) {
                 if (residuals[i] == no_distance) continue;
                 ++count;
-                squares += residuals[i] * residuals[i];
+                const double distance = std::min(residuals[i], most[f]);
+                squares += distance * distance;
             }
             if (count < least_points) continue;
             rms[f] = std::sqrt(squares / static_cast<double>(count));
             known.push_back(rms[f]);
         }
         if (known.empty()) return {};
-        const double limit = std::max(coarse_share * rms_of_mesh_, coarse_factor * quantile(known, 0.5));
+        const double limit =
+            std::max({coarse_share * rms_of_mesh_, coarse_factor * quantile(known, 0.5), rounding * size_});
         std::vector<u32> coarse;
         for (u32 f = 0; f < rms.size(); ++f)
             if (rms[f] > limit) coarse.push_back(f);
@@ -704,7 +709,8 @@ bool fix_crossing(const TriangleMesh& mesh, std::vector<bool>& is_fixed, Executi
     return has_new;
 }
 
-/// Fits the mesh with `fit`; where triangles intersect, their corners are fixed and it is repeated.
+/// Fits the mesh with `fit`. Corners of triangles that intersect are fixed from the start; where others intersect after
+/// the fit, their corners are fixed and it is repeated.
 template <class Fit>
 JointFit fit_without_crossing(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution,
                               Fit&& fit) {

@@ -29,10 +29,11 @@ struct JointFit {
 ///
 /// A triangle is too coarse for the shape if its points have an rms distance of more than 1.5 times that of the median
 /// triangle, and of more than a twentieth of their rms distance from the mesh. Such triangles are bisected and the fit
-/// is repeated, up to four times. On clean scans there are up to 30 % more edges then, on noisy ones few.
+/// is repeated, up to four times. This adds up to 30 % of the edges on clean scans, and few on noisy ones.
 ///
 /// Vertices on sharp edges and on the boundary, without normal, or without a point in their triangles keep their
-/// places. Normals beside sharp edges stay, so that creases do. Steps that would fold triangles are shortened.
+/// positions, and so do those of triangles that intersect others. Normals beside sharp edges stay, so that creases do.
+/// Steps that would fold triangles are shortened.
 ///
 /// The weight is multiplied by `fairing`. Without points near the mesh nothing changes.
 ///
@@ -41,8 +42,9 @@ struct JointFit {
 /// a little more than linear; up to three times as much if triangles intersect.
 JointFit fit_jointly(PatchMesh& mesh, std::span<const Vec3> points, double fairing, Execution& execution);
 
-/// Bisects triangles of a mesh that fit_jointly() fitted, and repeats the fit with the same weight. Returns the numbers
-/// of both fits.
+/// Bisects triangles of a mesh that fit_jointly() fitted, and repeats the fit with the same weight, without making the
+/// triangles even. The result's `bisected`, `flips` and offsets include those of `before`. Pre: as for fit_jointly().
+/// Cost: about 200 us per triangle and 10 us per point.
 JointFit fit_refined(PatchMesh& mesh, std::span<const u32> triangles, std::span<const Vec3> points,
                      const JointFit& before, Execution& execution);
 

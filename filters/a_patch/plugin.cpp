@@ -54,11 +54,13 @@ SCANMILL_FILTER() {
         .param("fairing", &P::fairing,
                "A factor on the weight of the surface's bending that the fit finds. Larger values make it smoother.",
                at_least(0))
-        .param("max-error", &P::max_error,
-               "Largest distance between the surface and the points. The fit bisects triangles until the points are "
-               "within it, unless the surface passes through the vertices. If points stay farther away, the result is "
-               "doubtful. `none`: any distance is accepted.",
-               word("none"))
+        .param(
+            "max-error", &P::max_error,
+            "Largest distance between the surface and the points, in both directions. The fit bisects triangles with "
+            "points beyond it, unless the surface passes through the vertices, but not for noise and single points. If "
+            "the "
+            "distance stays larger, the result is doubtful. `none`: any distance is accepted.",
+            word("none"))
         .param("regularisation", &P::regularisation,
                "With `interpolate: yes`: smallest penalty on changes of the edge gradients, relative to the points. An "
                "edge "
@@ -83,9 +85,9 @@ SCANMILL_FILTER() {
         .metric("sign-violations", Unit::count, "Edges, and weights over triangles, that allow a second sheet.",
                 smaller_is_better)
         .metric("refined", Unit::count,
-                "Edges bisected because tetrahedra were inside out or too large, a crease left its edge, or the fit "
-                "was far from "
-                "the points.")
+                "Edges bisected because tetrahedra were inside out or too large, a crease left its edge, triangles "
+                "were too "
+                "coarse for the shape, or their points were beyond max-error.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
         .metric("smoothed-edges", Unit::count,
@@ -110,7 +112,7 @@ SCANMILL_FILTER() {
                 "With max-error: largest distance between the surface and all points, in both directions. That from "
                 "the surface to the nearest point is less the distance of that point from its 6th neighbour.",
                 smaller_is_better)
-        .metric("beyond", Unit::count, "With max-error: points farther from the surface.", smaller_is_better)
+        .metric("beyond", Unit::count, "With max-error: points farther from the surface than that.", smaller_is_better)
         .metric("left-out", Unit::count, "Points in no tetrahedron; they are neither fitted nor measured.",
                 smaller_is_better)
         .metric("crease-max", Unit::length,

@@ -34,7 +34,7 @@ PointCloud wavy_torus(double height) {
     return points;
 }
 
-TEST(Certificate, APointBesideASphere_IsTheFarthest_AndTheDoubtNamesItsPlace) {
+TEST(Certificate, APointBesideASphere_IsTheFarthest_AndTheDoubtNamesItsPosition) {
     PointCloud points = fibonacci_sphere(4000);
     Array<Vec3> positions(points.positions.begin(), points.positions.end());
     const Vec3 out = 1.25 * positions[1234];
@@ -42,7 +42,7 @@ TEST(Certificate, APointBesideASphere_IsTheFarthest_AndTheDoubtNamesItsPlace) {
     points.positions = std::move(positions);
     const PatchRun run = patched(exact_sphere(3), within(0.01), &points);
     ASSERT_TRUE(run.result.certificate);
-    EXPECT_EQ(run.result.certificate->point.place, out);
+    EXPECT_EQ(run.result.certificate->point.position, out);
     EXPECT_NEAR(run.result.certificate->point.distance, 0.25, 2e-3);
     EXPECT_EQ(run.result.certificate->beyond, 1u);
     EXPECT_EQ(run.result.certificate->surface.distance, 0);
@@ -53,7 +53,7 @@ TEST(Certificate, APointBesideASphere_IsTheFarthest_AndTheDoubtNamesItsPlace) {
                                HasSubstr(fmt::format("at ({:.6g}, {:.6g}, {:.6g})", out.x(), out.y(), out.z())))));
 }
 
-TEST(Certificate, ASurfaceWithoutPoints_IsAsFarAsTheRimOfTheHole) {
+TEST(Certificate, ASurfaceWithoutPoints_IsAsFarAsTheNearestPoints) {
     PointCloud points = fibonacci_sphere(20000);
     Array<Vec3> positions;
     for (const Vec3& p : points.positions)
@@ -63,7 +63,7 @@ TEST(Certificate, ASurfaceWithoutPoints_IsAsFarAsTheRimOfTheHole) {
     ASSERT_TRUE(run.result.certificate);
     // From the pole to the rim: the chord of the angle whose cosine is 0.8, less a few spacings of 0.025.
     EXPECT_NEAR(run.result.certificate->surface.distance, std::sqrt(2 * (1 - 0.8)), 0.08);
-    EXPECT_GT(run.result.certificate->surface.place.z(), 0.98);
+    EXPECT_GT(run.result.certificate->surface.position.z(), 0.98);
     EXPECT_THAT(run.warnings, Contains(HasSubstr("farther from the nearest point than the points from each other")));
 }
 
@@ -86,6 +86,49 @@ TEST(Certificate, ALimitBelowTheNoise_IsDoubtful_AndCostsFewTriangles) {
     EXPECT_GT(metric_of(run, "beyond"), 10000);
     EXPECT_LT(run.result.mesh.triangles.size(), 1.1 * 720);
     EXPECT_THAT(run.warnings, Contains(HasSubstr("farther from the surface than max-error")));
+}
+
+TEST(Certificate, APointFarAway_HasItsDistance_OnClosedAndOpenMeshes) {
+    PointCloud points = fibonacci_sphere(4000);
+    Array<Vec3> positions(points.positions.begin(), points.positions.end());
+    positions.emplace_back(0, 0, 11);
+    points.positions = positions;
+    const PatchRun closed = patched(exact_sphere(3), within(0.5), &points);
+    EXPECT_NEAR(closed.result.certificate->point.distance, 10, 0.01);
+    EXPECT_EQ(closed.result.certificate->beyond, 1u);
+    // Without the triangles below the equator; points there are beside the boundary.
+    TriangleMesh open = geodesic_sphere(1, 4);
+    Array<Triangle> upper;
+    for (const Triangle& t : open.triangles)
+        if (std::ranges::all_of(t, [&](u32 v) { return open.positions[v].z() > -0.1; })) upper.push_back(t);
+    open.triangles = std::move(upper);
+    Array<Vec3> above;
+    for (const Vec3& p : positions)
+        if (p.z() > -0.4) above.push_back(p);
+    points.positions = std::move(above);
+    const PatchRun half = patched(open, within(0.5), &points);
+    EXPECT_NEAR(half.result.certificate->point.distance, 10, 0.01);
+    EXPECT_EQ(half.result.certificate->beyond, 1u);
+}
+
+TEST(Certificate, AnyNumberOfThreads_GivesTheSameBits_AndBisectedEdgesAddTwoTriangles) {
+    const TriangleMesh mesh = exact_torus(24, 10);
+    const PointCloud points = wavy_torus(0.01);
+    const PatchRun one = patched(mesh, within(2e-3), &points, 1), four = patched(mesh, within(2e-3), &points, 4);
+    EXPECT_TRUE(std::ranges::equal(one.result.patches.weights, four.result.patches.weights));
+    EXPECT_EQ(static_cast<double>(one.result.mesh.triangles.size()), 480 + 2 * metric_of(one, "refined"));
+}
+
+TEST(JointFit, OutliersOfOnePercent_BisectNothing) {
+    const TriangleMesh mesh = exact_torus(48, 20);
+    PointCloud points;
+    points.positions = exact_torus(160, 64).positions;
+    const PatchRun clean = patched(mesh, {}, &points, 2);
+    Array<Vec3> positions(points.positions.begin(), points.positions.end());
+    for (std::size_t i = 0; i < positions.size(); i += 100) positions[i] *= 1.01;
+    points.positions = std::move(positions);
+    const PatchRun with = patched(mesh, {}, &points, 2);
+    EXPECT_LE(metric_of(with, "refined"), metric_of(clean, "refined") + 20);
 }
 
 TEST(Certificate, ThroughTheVertices_IsMeasuredOnly) {
