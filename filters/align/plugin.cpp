@@ -32,7 +32,7 @@ SCANMILL_FILTER() {
         .in<PointCloud>("target", "The corresponding points, such as the same corners measured by a machine.")
         .in<PointCloud, TriangleMesh>(
             "part", "The part that will be moved, in the source's frame; for `error-at-part`.", optional)
-        .out<RigidTransform>("transform",
+        .out<Transforms>("transform",
                              "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
         .choice("scale", &P::scale,
                 {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` is not computed."},
@@ -68,8 +68,8 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("scale", Unit::number, "Size of the target relative to the source: 1 if the units agree.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            return Outputs().set("transform", align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
-                                                    part_at(inputs), params, context)
-                                                  .transform);
+            const Aligned aligned = align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
+                                          part_at(inputs), params, context);
+            return Outputs().set("transform", Transforms(aligned.transform));
         });
 }

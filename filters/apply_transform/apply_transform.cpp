@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "scanmill/base/error.hpp"
 
@@ -27,26 +28,30 @@ void require_rigid(const RigidTransform& transform) {
             .hint("check the file of the transform");
 }
 
-void require_frame(const Frame& frame, const RigidTransform& transform) {
-    const std::string& name = frame.name;
-    if (name.empty()) return;
-    if (name == transform.to && name != transform.from)
+/// The motion for values in this frame.
+const RigidTransform& motion_for(const std::string& name, const Transforms& transforms) {
+    const auto starts_here = [&](const RigidTransform& motion) { return motion.from == name; };
+    const auto ends_here = [&](const RigidTransform& motion) { return motion.to == name; };
+    if (!name.empty() && std::ranges::any_of(transforms.motions, ends_here) &&
+        std::ranges::none_of(transforms.motions, starts_here))
         throw Error("the value is already in the frame '{}', the target frame of the transform", name)
             .hint("wire the value as it was before this transform; a transform is applied once");
-    if (!transform.from.empty() && name != transform.from)
+    const RigidTransform& transform = transforms.motion_from(name);
+    if (!name.empty() && !transform.from.empty() && name != transform.from)
         throw Error("the value is in the frame '{}'; the transform starts from '{}'", name, transform.from)
             .hint("wire a value in that frame, or declare its frame at the workflow's input");
+    return transform;
 }
 
 }  // namespace
 
-Value apply_transform(const Value& value, const RigidTransform& transform, Context& context) {
+Value apply_transform(const Value& value, const Transforms& transforms, Context& context) {
     const std::optional<Frame> frame = frame_of(value);
     if (!frame)
         throw Error("the value is {}, which has no positions", name_of(value.kind()))
             .hint("wire points, a mesh, features, patches or probes");
+    const RigidTransform& transform = motion_for(frame->name, transforms);
     require_rigid(transform);
-    require_frame(*frame, transform);
     if (transform.unit == LengthUnit::unknown && frame->unit != LengthUnit::unknown && !transform.translation.isZero(0))
         context.warn(fmt::format("the transform has no unit; its translation is read in {}, the unit of the value",
                                  symbol(frame->unit)));

@@ -8,19 +8,20 @@
 
 namespace scanmill {
 
-/// Moves the value into the frame `transform.to` by placed() (scanmill/kinds/value.hpp). Positions are rotated, and the
-/// frame's origin is translated, so that large coordinates keep their digits. Directions and the columns `normal`,
+/// Moves the value by the motion that starts from its frame (Transforms::motion_from()) into the frame `to` of all
+/// motions, by placed() (scanmill/kinds/value.hpp). Positions are rotated, and the frame's origin is translated, so that large coordinates keep their digits. Directions and the columns `normal`,
 /// `approach` and `corner-normals` are rotated. Rows keep their order, and nothing else changes.
 ///
 /// Throws Error in these cases:
-/// - The value is in another frame than `transform.from`, or already in `transform.to`, if the names are known.
+/// - The value is in another frame than those from which motions start, or already in `to`, if the names are known.
 ///   Therefore a transform between two named frames cannot be applied twice.
+/// - The value's frame was refused, or has no name and there are several motions, or several motions start from it.
 /// - The transform has a unit and the value has none.
 /// - The rotation or the translation is not a rigid motion.
 /// - The value has no positions.
 ///
-/// Warns if the value has a unit and the transform has none. Warns if the value's frame has a name and `transform.to`
-/// is empty. Cost: O(n).
-Value apply_transform(const Value& value, const RigidTransform& transform, Context& context);
+/// Warns if the value has a unit and the transform has none. Warns if the value's frame has a name and `to` is empty.
+/// Cost: O(n).
+Value apply_transform(const Value& value, const Transforms& transforms, Context& context);
 
 }  // namespace scanmill

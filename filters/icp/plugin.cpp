@@ -30,7 +30,7 @@ SCANMILL_FILTER() {
                                       "What stays: a mesh, or points with the column `normal` or without it. The scan "
                                       "should be within 2 % of the "
                                       "diagonal and 2 degrees of its pose on it.")
-        .out<RigidTransform>("transform",
+        .out<Transforms>("transform",
                              "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
         .param("max-distance", &P::max_distance,
                "Points farther than this from the target have no pair; `auto` is 5 % of the smaller diagonal. Within "
@@ -56,6 +56,6 @@ SCANMILL_FILTER() {
                 "and the result is doubtful.",
                 headline, larger_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            return Outputs().set("transform", refined(inputs, params, context).transform);
+            return Outputs().set("transform", Transforms(refined(inputs, params, context).transform));
         });
 }

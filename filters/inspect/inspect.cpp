@@ -261,7 +261,7 @@ TriangleMesh map_on(const TriangleMesh& given, const Vec3& shift, const Nominal&
     return mesh;
 }
 
-Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const RigidTransform* transform,
+Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Transforms* transforms,
                         const InspectParams& params, Context& context) {
     require_sound(params);
     require_surface(nominal);
@@ -274,8 +274,9 @@ Inspection inspect_scan(const Scan& scan, const TriangleMesh& nominal, const Rig
     require_tolerance(params, result.tolerance, result.unit);
     result.chord_error = resolved(params.chord_error);
     result.diagonal = surface_box(nominal).diagonal();
-    result.aligned = transform != nullptr;
-    if (transform && transform->rms) result.alignment_rms = in_unit_of(*transform, result.unit);
+    result.aligned = transforms != nullptr;
+    if (transforms && transforms->motions.size() == 1 && transforms->motions.front().rms)
+        result.alignment_rms = in_unit_of(transforms->motions.front(), result.unit);
 
     const Vec3 shift = nominal.frame.origin - scan.frame.origin;
     const Nominal surface(nominal, shift.isZero(0) ? nominal.positions : translated(nominal.positions, shift),
@@ -394,24 +395,24 @@ std::string suffix_of(std::size_t number) { return number == 1 ? "" : fmt::forma
 
 }  // namespace
 
-Inspection inspect(const PointCloud& scan, const TriangleMesh& nominal, const RigidTransform* transform,
+Inspection inspect(const PointCloud& scan, const TriangleMesh& nominal, const Transforms* transforms,
                    const InspectParams& params, Context& context) {
     require_points(scan, "there is nothing to inspect");
     const std::span<const Vec3> positions = scan.positions.span();
     return inspect_scan({scan.frame, positions, all_rows(scan.size()), [=] { return point_spacing(positions); },
                          [=] { return robust_box(positions).diagonal(); },
                          [=](std::span<const u32> order) { return spacing_along(positions, order); }},
-                        nominal, transform, params, context);
+                        nominal, transforms, params, context);
 }
 
-Inspection inspect(const TriangleMesh& scan, const TriangleMesh& nominal, const RigidTransform* transform,
+Inspection inspect(const TriangleMesh& scan, const TriangleMesh& nominal, const Transforms* transforms,
                    const InspectParams& params, Context& context) {
     require_triangles(scan, "a scan that is a mesh needs at least one");
     const auto spacing = [&scan] { return edge_spacing(scan); };
     return inspect_scan(
         {scan.frame, scan.positions.span(), used_rows(scan), spacing, [&scan] { return surface_box(scan).diagonal(); },
          [=](std::span<const u32>) { return spacing(); }},
-        nominal, transform, params, context);
+        nominal, transforms, params, context);
 }
 
 PointCloud deviation_of(const PointCloud& scan, const Inspection& inspected, Context& context) {

@@ -86,8 +86,8 @@ struct Inspection {
     ColourScale scale;
     LengthUnit unit = LengthUnit::unknown;
     double diagonal = 0;  ///< the diagonal of the nominal's bounding box
-    /// Whether a transform was given, and what it contains, in `unit`.
-    bool aligned = false;
+    bool aligned = false;  ///< whether a transform was given
+    /// The rms of its motion, in `unit`; without a value if the motion has none, or if there are several motions.
     std::optional<double> alignment_rms;
 
     /// By row of the scan: NaN unless the point is counted or cut.
@@ -125,9 +125,9 @@ struct Inspection {
 /// Cost: O(n log F) for n points and F triangles, and the points near every vertex of the map; on two cores about 1 s
 /// per
 ///       million points.
-Inspection inspect(const PointCloud& scan, const TriangleMesh& nominal, const RigidTransform* transform,
+Inspection inspect(const PointCloud& scan, const TriangleMesh& nominal, const Transforms* transforms,
                    const InspectParams& params, Context& context);
-Inspection inspect(const TriangleMesh& scan, const TriangleMesh& nominal, const RigidTransform* transform,
+Inspection inspect(const TriangleMesh& scan, const TriangleMesh& nominal, const Transforms* transforms,
                    const InspectParams& params, Context& context);
 
 /// The scan with the columns `deviation`, `label`, `part` (unless By::none) and `colour`. An earlier column `colour` is

@@ -50,7 +50,7 @@ Filter declaration() {
         .not_finite("Refused; the message gives their number and the first one.")
         .in<PointCloud, TriangleMesh>("scan", "The measured part: points, or a mesh whose vertices are measured.")
         .in<TriangleMesh>("nominal", "The surface that the part should have, in the frame and unit of the scan.")
-        .in<RigidTransform>("transform", "The motion that aligned the scan; not applied, only its rms is reported.",
+        .in<Transforms>("transform", "The motion that aligned the scan; not applied, only its rms is reported.",
                             optional, by_name)
         .out<Metrics>("metrics", "All metrics, lengths in the unit of the scan.")
         .out_like("deviation", "scan",
@@ -119,10 +119,10 @@ Filter declaration() {
         .metric("diagonal", Unit::length, "Diagonal of the bounding box of the nominal.");
     filter.run([](const Inputs& inputs, const P& params, Context& context) {
         const auto& nominal = inputs.get<TriangleMesh>("nominal");
-        const auto* transform = inputs.find<RigidTransform>("transform");
+        const auto* transforms = inputs.find<Transforms>("transform");
         Outputs outputs;
         const auto inspect_and_set = [&](const auto& scan) {
-            const Inspection inspected = inspect(scan, nominal, transform, params, context);
+            const Inspection inspected = inspect(scan, nominal, transforms, params, context);
             const Metrics metrics = metrics_of(inspected);
             for (const Metric& metric : metrics.values) context.metric(metric.name, metric.value, metric.unit);
             outputs.set("metrics", metrics)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "merge/merge_steps.hpp"
 #include "scanmill/base/error.hpp"
@@ -15,15 +16,20 @@ namespace scanmill {
 namespace {
 
 using Inputs = std::span<const std::shared_ptr<const PointCloud>>;
+/// The number of each input in messages, ascending.
+using Numbers = std::span<const u32>;
+
+/// The count that goes with the numbers, which may lack those of inputs that were left out.
+u32 count_of(Numbers numbers) { return numbers.back() + 1; }
 
 std::string_view unit_text(LengthUnit unit) { return unit == LengthUnit::unknown ? "an unknown unit" : symbol(unit); }
 
-void require_one_unit(Inputs inputs) {
+void require_one_unit(Inputs inputs, Numbers numbers) {
     const LengthUnit first = inputs.front()->frame.unit;
     for (std::size_t input = 1; input < inputs.size(); ++input)
         if (const LengthUnit unit = inputs[input]->frame.unit; unit != first)
-            throw Error("the inputs have different units: {} in input 0, {} in input {}", unit_text(first),
-                        unit_text(unit), input)
+            throw Error("the inputs have different units: {} in input {}, {} in input {}", unit_text(first),
+                        numbers[0], unit_text(unit), numbers[input])
                 .hint(first == LengthUnit::unknown || unit == LengthUnit::unknown
                           ? "declare the unit of all inputs, for example as `unit: mm` at the workflow's input"
                           : "convert one of them")
@@ -31,16 +37,15 @@ void require_one_unit(Inputs inputs) {
                                                                                     : Remedy::convert_unit);
 }
 
-void require_sound(Inputs inputs, const MergeParams& params) {
-    if (inputs.empty()) throw Error("there are no clouds; merging needs at least one");
+void require_sound(Inputs inputs, Numbers numbers, const MergeParams& params) {
     std::size_t points = 0;
     for (std::size_t input = 0; input < inputs.size(); ++input) {
-        if (inputs[input]->size() == 0) throw Error("input {} of {} has no points", input, inputs.size());
+        if (inputs[input]->size() == 0) throw Error("input {} of {} has no points", numbers[input], count_of(numbers));
         points += inputs[input]->size();
         try {
             require_finite(inputs[input]->positions.span());
         } catch (Error& error) {
-            error.add_frame(fmt::format("in input {} of {}", input, inputs.size()));
+            error.add_frame(fmt::format("in input {} of {}", numbers[input], count_of(numbers)));
             throw;
         }
     }
@@ -48,7 +53,7 @@ void require_sound(Inputs inputs, const MergeParams& params) {
         throw Error("the {} inputs have {} points together; at most {} can be numbered", inputs.size(), points,
                     std::numeric_limits<u32>::max())
             .hint("thin the inputs first");
-    require_one_unit(inputs);
+    require_one_unit(inputs, numbers);
     const double within = params.within.value();
     if (!(within >= 0) || !std::isfinite(within))
         throw Error("the distance `within` is {} u; it must be 0 or more", within);
@@ -62,7 +67,7 @@ void require_sound(Inputs inputs, const MergeParams& params) {
 }
 
 /// The numbers in the columns `uncertainty` of all inputs, checked and laid end to end.
-std::vector<double> uncertainties(Inputs inputs) {
+std::vector<double> uncertainties(Inputs inputs, Numbers numbers) {
     std::vector<double> values;
     for (std::size_t input = 0; input < inputs.size(); ++input) {
         const Column* column = inputs[input]->columns.find("uncertainty");
@@ -70,14 +75,15 @@ std::vector<double> uncertainties(Inputs inputs) {
             throw Error(
                 "input {} of {} has no column 'uncertainty' with one number per point, which lower-uncertainty "
                 "compares",
-                input, inputs.size())
+                numbers[input], count_of(numbers))
                 .hint(
                     "`default-uncertainty` replaces a missing column; `prefer: none` keeps the points of the earlier "
                     "input");
         for (std::size_t row = 0; row < column->rows(); ++row) {
             values.push_back(column->number(row));
             if (!(values.back() >= 0))
-                throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, input, values.back())
+                throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, numbers[input],
+                            values.back())
                     .hint(std::isnan(values.back())
                               ? "`default-uncertainty` replaces NaN; `prefer: none` does not read the column"
                               : "`prefer: none` does not read the column");
@@ -86,7 +92,7 @@ std::vector<double> uncertainties(Inputs inputs) {
     return values;
 }
 
-void warn_of_names(Inputs inputs, Context& context) {
+void warn_of_names(Inputs inputs, Numbers numbers, Context& context) {
     const std::string& first = inputs.front()->frame.name;
     const auto differs = [&](const auto& cloud) { return cloud->frame.name != first; };
     const auto other = std::ranges::find_if(inputs, differs);
@@ -94,7 +100,8 @@ void warn_of_names(Inputs inputs, Context& context) {
     context.warn(fmt::format(
         "{} of {} inputs have another frame than '{}', the frame of the first input; one of them is input {} in '{}'. "
         "Without poses, all inputs are assumed to be in the same frame",
-        std::ranges::count_if(inputs, differs), inputs.size(), first, other - inputs.begin(), (*other)->frame.name));
+        std::ranges::count_if(inputs, differs), inputs.size(), first, numbers[static_cast<std::size_t>(other - inputs.begin())],
+        (*other)->frame.name));
 }
 
 /// Maps p to rotation p + shift.
@@ -178,19 +185,33 @@ std::vector<std::shared_ptr<const PointCloud>> with_default(Inputs inputs, doubl
     return result;
 }
 
+/// `given`, or 0, 1, 2 …
+std::vector<u32> numbers_of(Inputs inputs, const std::vector<u32>& given) {
+    if (inputs.empty()) throw Error("there are no clouds; merging needs at least one");
+    if (!given.empty()) {
+        if (given.size() != inputs.size() || std::ranges::adjacent_find(given, std::ranges::greater_equal()) != given.end())
+            throw Error("the numbers of the inputs must be one per input and ascend");
+        return given;
+    }
+    std::vector<u32> numbers(inputs.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
 }  // namespace
 
 MergeResult merge(Inputs given, const MergeParams& params, Context& context) {
-    require_sound(given, params);
+    const std::vector<u32> numbers = numbers_of(given, params.numbers);
+    require_sound(given, numbers, params);
     std::vector<std::shared_ptr<const PointCloud>> completed(given.begin(), given.end());
     if (params.default_uncertainty) completed = with_default(given, params.default_uncertainty->value());
     const Inputs inputs = completed;
-    if (params.poses.empty()) warn_of_names(inputs, context);
+    if (params.poses.empty()) warn_of_names(inputs, numbers, context);
     std::vector<double> preference;
-    if (params.prefer == MergeParams::Prefer::lower_uncertainty) preference = uncertainties(inputs);
+    if (params.prefer == MergeParams::Prefer::lower_uncertainty) preference = uncertainties(inputs, numbers);
 
     PointCloud all = placed_points(inputs, params.poses);
-    all.columns = merging::merged_columns(inputs, params.poses, context);
+    all.columns = merging::merged_columns(inputs, params.poses, numbers, context);
     const std::span<const u32> source = all.columns.find("source")->values<u32>();
     if (std::string doubt = merging::frames_doubt(all.positions.span(), source, context); !doubt.empty())
         context.doubt(doubt + (params.poses.empty() ? "; give the poses of the views, or align the files first"

@@ -29,6 +29,9 @@ struct MergeParams {
     /// Empty, or one pose per input, which maps its world coordinates (frame origin included) to those of the result. A
     /// pose of unknown unit is in the unit of the clouds.
     std::vector<RigidTransform> poses;
+    /// Empty, or the number of each input in messages and in the column `source`; ascending. For callers that leave
+    /// inputs out.
+    std::vector<u32> numbers;
 };
 
 struct MergeResult {
@@ -60,7 +63,8 @@ struct MergeResult {
 /// `default_uncertainty`, the column `uncertainty` always exists and is a length; rows without a number have the
 /// default.
 ///
-/// The last column is the new column `source` (uint32). It contains the number of the point's input, counted from 0. An
+/// The last column is the new column `source` (uint32). It contains the number of the point's input, counted from 0, or
+/// that of `numbers`. An
 /// existing column `source` is renamed `source-of-source`, an existing column `source-of-source` is renamed
 /// `source-of-source-of-source`, and so on.
 ///
@@ -71,7 +75,8 @@ struct MergeResult {
 /// Throws Error for
 ///  - no inputs, an input without points, a NaN or infinite coordinate, more than 2^32 - 1 points;
 ///  - different units (also known and unknown), a pose in a known unit for clouds of an unknown unit;
-///  - a negative or infinite `within` or default uncertainty, a number of poses that is not the number of inputs;
+///  - a negative or infinite `within` or default uncertainty;
+///  - poses or numbers that are not one per input, numbers that do not ascend;
 ///  - moved points whose box is longer than 1e9 u;
 ///  - with lower_uncertainty: an input without a column `uncertainty` of one component, or with a NaN or a negative
 ///    number in it. A default replaces missing columns and NaN before this check.

@@ -19,9 +19,10 @@ namespace scanmill::merging {
 PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, double value);
 
 /// The columns of the clouds, end to end, in the order in which their names first appear, `source` last. Warns about
-/// every column that is left out or changed. Pre: at least one cloud; `poses` is empty or as long as `clouds`.
+/// every column that is left out or changed. `numbers`: the number of each cloud, for `source` and messages; ascending.
+/// Pre: at least one cloud; `poses` is empty or as long as `clouds`.
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
-                           std::span<const RigidTransform> poses, Context& context);
+                           std::span<const RigidTransform> poses, std::span<const u32> numbers, Context& context);
 
 /// Rows that are kept, ascending; all rows if `within` is 0. `source`: the number of each row's cloud; rows are ordered
 /// by cloud. `preference`: empty, or a number for each row; smaller is better.

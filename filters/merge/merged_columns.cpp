@@ -101,9 +101,11 @@ Column constant(const Column& like, std::size_t rows, double value) {
 
 class Merger {
 public:
-    Merger(std::vector<ColumnTable> tables, std::vector<std::size_t> rows, Context& context)
+    Merger(std::vector<ColumnTable> tables, std::vector<std::size_t> rows, std::span<const u32> numbers,
+           Context& context)
         : tables_(std::move(tables)),
           rows_(std::move(rows)),
+          numbers_(numbers),
           context_(context) {}
 
     ColumnTable merged() {
@@ -123,11 +125,11 @@ private:
     /// One column per cloud, suitable for joined(). Empty, with a warning, if the columns cannot be joined.
     std::vector<Column> parts_of(const std::string& name) {
         std::vector<Column> parts;
-        std::vector<std::size_t> inputs;  // inputs that have the column
+        std::vector<u32> inputs;  // numbers of the inputs that have the column
         for (std::size_t input = 0; input < tables_.size(); ++input)
             if (const Column* column = tables_[input].find(name)) {
                 parts.push_back(*column);
-                inputs.push_back(input);
+                inputs.push_back(numbers_[input]);
             }
         const Column first = parts.front();
         const bool is_even =
@@ -168,12 +170,14 @@ private:
 
     std::vector<ColumnTable> tables_;
     std::vector<std::size_t> rows_;
+    std::span<const u32> numbers_;
     Context& context_;
 };
 
-Column source_column(std::span<const std::shared_ptr<const PointCloud>> clouds) {
+Column source_column(std::span<const std::shared_ptr<const PointCloud>> clouds, std::span<const u32> numbers) {
     Array<u32> source;
-    for (u32 cloud = 0; cloud < clouds.size(); ++cloud) source.insert(source.end(), clouds[cloud]->size(), cloud);
+    for (std::size_t cloud = 0; cloud < clouds.size(); ++cloud)
+        source.insert(source.end(), clouds[cloud]->size(), numbers[cloud]);
     return {newest, 1, Buffer<u32>(std::move(source))};
 }
 
@@ -209,7 +213,7 @@ PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, do
 }
 
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
-                           std::span<const RigidTransform> poses, Context& context) {
+                           std::span<const RigidTransform> poses, std::span<const u32> numbers, Context& context) {
     std::vector<ColumnTable> tables(clouds.size());
     std::vector<std::size_t> rows;
     for (const auto& cloud : clouds) rows.push_back(cloud->size());
@@ -223,8 +227,8 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
         context.warn(fmt::format("{} of {} already {} a column 'source'; it was renamed 'source{}'", with_source,
                                  count_text(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
                                  older));
-    ColumnTable result = Merger(std::move(tables), std::move(rows), context).merged();
-    result.add(source_column(clouds));
+    ColumnTable result = Merger(std::move(tables), std::move(rows), numbers, context).merged();
+    result.add(source_column(clouds, numbers));
     return result;
 }
 

@@ -107,9 +107,11 @@ Meetings meetings(const View& view, const View& other) {
 
 std::string frames_doubt(std::span<const Vec3> positions, std::span<const u32> source, Context& context) {
     std::vector<std::span<const Vec3>> clouds;
+    std::vector<u32> numbers;  // of the inputs
     for (std::size_t begin = 0, end; begin < positions.size(); begin = end) {
         end = static_cast<std::size_t>(std::ranges::upper_bound(source, source[begin]) - source.begin());
         clouds.push_back(positions.subspan(begin, end - begin));
+        numbers.push_back(source[begin]);
     }
     const std::size_t count = std::min(clouds.size(), most_views);
     if (count < 2) return {};
@@ -117,8 +119,8 @@ std::string frames_doubt(std::span<const Vec3> positions, std::span<const u32> s
     std::vector<View> views;
     for (std::size_t i = 0; i < count; ++i) {
         context.check_cancelled();
-        const std::size_t number = i * clouds.size() / count;
-        views.push_back(view_of(static_cast<u32>(number), clouds[number], samples));
+        const std::size_t cloud = i * clouds.size() / count;
+        views.push_back(view_of(numbers[cloud], clouds[cloud], samples));
     }
 
     struct Pair {

@@ -15,13 +15,14 @@ struct PosedMergeParams : MergeParams {
 
 SCANMILL_FILTER() {
     using P = PosedMergeParams;
-    return Declare<P>("merge", 3)
+    return Declare<P>("merge", 4)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
         .ties("If points overlap and have equal preference, the point of the earlier input is kept.")
         .not_finite("Refused; the message gives the input, their number and the first one.")
         .adds({"source", "uncertainty"})
         .in<PointCloud>("points", "At least one cloud; all have finite coordinates and the same unit.", list)
+        .in<Transforms>("transform", "The motion of each input, in place of a file of `poses`.", optional, by_name)
         .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file with the pose of each input.", word("none"))
         .choice("prefer", &P::prefer,
@@ -39,12 +40,17 @@ SCANMILL_FILTER() {
         .metric("dropped", Unit::count, "Points that were dropped because a point of another input overlaps them.",
                 headline)
         .run([](const Inputs& inputs, P params, Context& context) {
-            const auto clouds = inputs.list<PointCloud>("points");
-            if (params.poses_file) {
-                std::vector<Frame> frames;
-                for (const auto& cloud : clouds) frames.push_back(cloud->frame);
+            auto clouds = inputs.list<PointCloud>("points");
+            const auto* transforms = inputs.find<Transforms>("transform");
+            if (transforms && params.poses_file)
+                throw Error("the poses come from the file '{}' and from the input `transform`; one of them is needed",
+                            params.poses_file->string())
+                    .hint("remove `poses` or the input `transform`");
+            if (transforms) {
+                merging::place(clouds, params, merging::scan_poses_of(*transforms), context);
+            } else if (params.poses_file) {
                 const auto warn = [&](std::string sentence) { context.warn(std::move(sentence)); };
-                params.poses = merging::poses_of(frames, read_poses(*params.poses_file, warn), context);
+                merging::place(clouds, params, read_poses(*params.poses_file, warn), context);
             }
             return Outputs().set("points", merge(clouds, params, context).points);
         });

@@ -341,6 +341,7 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     file.unit = scan.unit;
     file.frame = scan.frame;
     file.pose = scan.pose;
+    file.pose_refusal = scan.pose_refusal;
     file.invalid = scan.invalid;
     for (const WorkflowInput& input : plan.workflow.inputs) {
         const auto own = scan.inputs.find(input.name);

@@ -75,6 +75,23 @@ TEST_F(Batch, TruthAndPoseFiles_AreNotReplaced) {
     EXPECT_EQ(content_of(folder_ / "out/p.ply.json"), pose);
 }
 
+TEST_F(Batch, ScanThatItsPoseFileRefuses_FailsAlone) {
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: "
+                  "{'{scan}.ply': test-step}\n");
+    folder_.write("in/p.xyz", "1 2 3\n4 5 6\n");
+    folder_.write("in/q.xyz", "1 2 3\n4 5 6\n");
+    folder_.write("poses.json",
+                  "{\"scanmill\": 1, \"poses\": [{\"scan\": \"p.xyz\", \"rotation\": [0, 0, 0, 1], \"translation\": "
+                  "[1, 0, 0]}, {\"scan\": \"q.xyz\", \"refused\": \"no-overlap: at most 12 %\"}]}");
+    write_batch("{path: in/*.xyz, pose: poses.json}");
+    const ProgramResult result = run_batch();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err + result.out, AllOf(HasSubstr("'q.xyz'"), HasSubstr("no-overlap: at most 12 %")));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/p.ply"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/q.ply"));
+}
+
 TEST_F(Batch, EqualScansOfOneName_NeedTwoFiles_WhichTheFolderGives) {
     const auto workflow = [&](const std::string& name) {
         folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: {'" +

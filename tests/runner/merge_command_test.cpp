@@ -79,6 +79,54 @@ TEST_F(MergeCommand, ViewWithoutPose_FailsNamingIt) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/merge-views.ply"));
 }
 
+/// Poses as JSON: `left` is moved, `top` is refused.
+class MergeByTransform : public MergeCommand {
+protected:
+    MergeByTransform() {
+        folder_.write("top.xyz", "0 0 0\n");
+        folder_.write("motions.json",
+                      "{\"scanmill\": 1, \"frame\": \"part\", \"poses\": [{\"scan\": \"right\", \"rotation\": [0, 0, 0, "
+                      "1], \"translation\": [0, 0, 0]}, {\"scan\": \"top\", \"refused\": \"no-overlap\"}, {\"scan\": "
+                      "\"left\", \"rotation\": [0, 0, 0, 1], \"translation\": [10, 0, 0]}]}");
+    }
+    ProgramResult merge(const std::string& step) const {
+        folder_.write("by-port.yaml",
+                      "scanmill: 1\nname: by-port\ninputs:\n  views: {kind: points, list: true, frame: '{stem}'}\n"
+                      "  motions: transform\nsteps:\n" +
+                          step + "outputs: {'merged.ply': merge}\n");
+        return scanmill_program({"run", "by-port.yaml", "left.xyz", "top.xyz", "right.xyz", "--in",
+                                 "motions=motions.json", "-o", "out"},
+                                {.folder = folder_.path()});
+    }
+};
+
+TEST_F(MergeByTransform, WiredByName_MovesTheViewsAndLeavesRefusedOnesOut) {
+    const ProgramResult ran = merge("  - merge:\n    in: {points: views, transform: motions}\n");
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("input 1 'top' (no-overlap)"));
+    const auto points = read_points(folder_ / "out/merged.ply");
+    ASSERT_EQ(points->size(), 3u);
+    EXPECT_EQ(points->positions[0], Vec3(11, 2, 3));
+    EXPECT_EQ(points->positions[1], Vec3(-2, 1, 3));
+    EXPECT_EQ(points->columns.find("source")->number(1), 2);
+    const ProgramResult from_file = merge("  - merge: {poses: motions.json}\n    in: {points: views}\n");
+    ASSERT_EQ(from_file.exit_code, 0) << from_file.err;
+    EXPECT_EQ(read_points(folder_ / "out/merged.ply")->positions[0], Vec3(11, 2, 3));
+}
+
+TEST_F(MergeByTransform, WithoutIn_DoesNotTakeAnEarlierTransform) {
+    const ProgramResult ran = merge("  - merge:\n    in: {points: views}\n");
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_EQ(read_points(folder_ / "out/merged.ply")->size(), 4u);
+}
+
+TEST_F(MergeByTransform, AndAFileOfPoses_AreRefused) {
+    const ProgramResult ran =
+        merge("  - merge: {poses: v.conf}\n    in: {points: views, transform: motions}\n");
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("v.conf"), HasSubstr("`transform`"), HasSubstr("hint")));
+}
+
 TEST_F(MergeCommand, MissingPoses_FailNamingTheFile) {
     const ProgramResult ran = run({"left.xyz", "--set", "poses=absent.conf", "-o", "out"});
     EXPECT_EQ(ran.exit_code, 1);

@@ -74,7 +74,7 @@ DeclaredFilters::DeclaredFilters() {
     add(spec(declare<Nothing>("register")
                  .in<PointCloud>("source", help)
                  .in<PointCloud>("target", help)
-                 .out<RigidTransform>("transform", help)));
+                 .out<Transforms>("transform", help)));
     add(spec(declare<Nothing>("combine").in<PointCloud>("points", help, list).out<PointCloud>("points", help)));
     add(spec(declare<Nothing>("pair")
                  .in<PointCloud>("points", help)

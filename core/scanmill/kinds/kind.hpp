@@ -28,7 +28,7 @@ namespace scanmill {
     KIND(FeatureGraph)           \
     KIND(PatchComplex)           \
     KIND(ProbePlan)              \
-    KIND(RigidTransform)         \
+    KIND(Transforms)             \
     KIND(Metrics)                \
     KIND(Picture)
 // clang-format on

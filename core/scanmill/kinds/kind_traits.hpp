@@ -69,20 +69,25 @@ void visit_array(FieldVisitor& visitor, const char* name, const auto& field, Buf
     visitor.plain(name, elements);
 }
 
-/// Visits a list of structs field by field. The members of all rows form one array; lists of positions are
-/// concatenated.
+/// Whether visit_rows() visits the members of this type as one small field: texts, structs and optional numbers.
+template <class Member>
+concept SmallInRows = std::same_as<Member, std::string> || Described<Member> ||
+                      requires(const Member& member) { member.has_value(); };
+
+/// Visits a list of structs field by field. The members of all rows form one array, or one small field; lists of
+/// positions are concatenated.
 template <Described Row>
 void visit_rows(FieldVisitor& visitor, const std::string& prefix, std::vector<Row>& rows) {
     for_each_field<Row>([&](const auto& field) {
         using Member = typename std::remove_cvref_t<decltype(field)>::Member;
         using Element = std::conditional_t<std::same_as<Member, bool>, u8, Member>;
         const std::string name = prefix + "." + field.name;
-        if constexpr (std::same_as<Member, std::string>) {
-            std::vector<std::string> texts;
-            for (const Row& row : rows) texts.push_back(row.*field.member);
-            visitor.small(name.c_str(), texts);
-            rows.resize(texts.size());
-            for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*field.member = texts[i];
+        if constexpr (SmallInRows<Member>) {
+            std::vector<Member> members;
+            for (const Row& row : rows) members.push_back(row.*field.member);
+            visitor.small(name.c_str(), members);
+            rows.resize(members.size());
+            for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*field.member = members[i];
         } else if constexpr (std::same_as<Member, Array<Vec3>>) {
             Array<u32> sizes;
             Array<Vec3> all;

@@ -74,12 +74,15 @@ RigidTransform motion_of(std::span<const double, 16> matrix, std::string_view pl
 
 namespace {
 
+using Matrix = std::array<std::array<double, 4>, 4>;
+
 struct PoseDocument {
     std::string scan;
     std::optional<std::array<double, 4>> rotation;
     std::optional<Vec3> translation;
-    std::optional<std::array<std::array<double, 4>, 4>> matrix;
+    std::optional<Matrix> matrix;
     std::optional<double> rms;
+    std::optional<std::string> refused;
 };
 constexpr auto fields(const PoseDocument*) {
     using T = PoseDocument;
@@ -92,19 +95,48 @@ constexpr auto fields(const PoseDocument*) {
         field("matrix", &T::matrix, "Four rows, instead of rotation and translation.").optional(),
         field("rms", &T::rms,
               "Root mean square distance that is left between what the motion brings together, in the unit.")
-            .optional()};
+            .optional(),
+        field("refused", &T::refused, "Why the scan has no pose, instead of a motion.").optional()};
+}
+
+struct EdgeDocument {
+    std::array<std::string, 2> views;
+    Matrix matrix{};
+    std::optional<double> rms;
+    double overlap = 0, front = 0, missing = 0, slide = 0, score = 0;
+};
+constexpr auto fields(const EdgeDocument*) {
+    using T = EdgeDocument;
+    return std::tuple{
+        field("views", &T::views, "The names of both views."),
+        field("matrix", &T::matrix, "Four rows: the motion from the first view's coordinates to the second's."),
+        field("rms", &T::rms, "As in a pose.").optional(),
+        field("overlap", &T::overlap, "Share of points with a partner in the other view; the larger of both shares."),
+        field("front", &T::front, "Share of points in front of the surface that the other view's scanner saw."),
+        field("missing", &T::missing, "Share of points that the other view's scanner faces but did not measure."),
+        field("slide", &T::slide, "Near 0 if the views can slide on each other."),
+        field("score", &T::score, "Larger is better.")};
 }
 
 struct PosesDocument {
     LengthUnit unit = LengthUnit::unknown;
     std::string frame;
     std::vector<PoseDocument> poses;
+    std::vector<EdgeDocument> edges{};
 };
 constexpr auto fields(const PosesDocument*) {
     using T = PosesDocument;
     return std::tuple{field("unit", &T::unit).nullable().optional(),
                       field("frame", &T::frame, "The coordinate system that all poses lead to.").nullable().optional(),
-                      field("poses", &T::poses)};
+                      field("poses", &T::poses),
+                      field("edges", &T::edges, "The pairs of views from which the poses were found.").optional()};
+}
+
+std::optional<double> checked_rms(const std::optional<double>& rms, std::string_view place) {
+    if (rms && !(*rms >= 0))
+        throw Error("{}: 'rms' is {}; expected a length of at least 0", place, *rms)
+            .hint("leave it out if the motion was not found by a fit");
+    return rms;
 }
 
 RigidTransform motion_at(const PoseDocument& pose, const std::string& place, const OnWarning& warn) {
@@ -123,53 +155,142 @@ RigidTransform motion_at(const PoseDocument& pose, const std::string& place, con
     return motion;
 }
 
-}  // namespace
+void require_refusal(const PoseDocument& pose, const std::string& place) {
+    for (const auto& [name, is_given] :
+         {std::pair("rotation", pose.rotation.has_value()), std::pair("translation", pose.translation.has_value()),
+          std::pair("matrix", pose.matrix.has_value()), std::pair("rms", pose.rms.has_value())})
+        if (is_given) throw Error("{}: has 'refused' and '{}'; a refused scan has no motion", place, name);
+    if (pose.scan.empty()) throw Error("{}: is refused, but does not name its scan", place);
+    if (pose.refused->empty()) throw Error("{}: 'refused' is empty; expected the reason", place);
+}
 
-std::vector<ScanPose> poses_from_json(const Json& json, const OnWarning& warn) {
-    const auto document = from_document<PosesDocument>(json);
+std::vector<ScanPose> poses_of(const PosesDocument& document, const OnWarning& warn) {
     if (document.poses.empty()) throw Error("contains no pose; expected \"poses\" to be a list of poses");
     std::vector<ScanPose> poses;
     for (const PoseDocument& each : document.poses) {
-        ScanPose pose{each.scan, motion_at(each, fmt::format("pose {}", poses.size() + 1), warn)};
+        const std::string place = fmt::format("pose {}", poses.size() + 1);
+        ScanPose pose{each.scan, {}, each.refused};
+        if (each.refused) {
+            require_refusal(each, place);
+        } else {
+            pose.transform = motion_at(each, place, warn);
+            pose.transform.rms = checked_rms(each.rms, place);
+        }
         pose.transform.unit = document.unit;
         pose.transform.to = document.frame;
-        if (each.rms && !(*each.rms >= 0))
-            throw Error("pose {}: 'rms' is {}; expected a length of at least 0", poses.size() + 1, *each.rms)
-                .hint("leave it out if the motion was not found by a fit");
-        pose.transform.rms = each.rms;
         poses.push_back(std::move(pose));
     }
     return poses;
 }
 
+std::vector<PoseEdge> edges_of(const PosesDocument& document) {
+    std::vector<PoseEdge> edges;
+    for (const EdgeDocument& each : document.edges) {
+        const std::string place = fmt::format("edge {}", edges.size() + 1);
+        RigidTransform pose = motion_of(std::span<const double, 16>(each.matrix.front().data(), 16), place);
+        pose.unit = document.unit;
+        pose.from = each.views[0];
+        pose.to = each.views[1];
+        pose.rms = checked_rms(each.rms, place);
+        edges.push_back({std::move(pose), each.overlap, each.front, each.missing, each.slide, each.score});
+    }
+    return edges;
+}
+
+Matrix matrix_of(const RigidTransform& motion) {
+    Matrix matrix{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        const auto at = static_cast<Eigen::Index>(row);
+        const auto r = motion.rotation.row(at);
+        matrix[row] = {r[0], r[1], r[2], motion.translation[at]};
+    }
+    return matrix;
+}
+
+/// Throws Error unless the motions lead to one frame, in one unit.
+void require_one_frame(const Transforms& transforms) {
+    if (transforms.motions.empty()) throw Error("the transform has no motion; at least one is needed");
+    const RigidTransform& first = transforms.motions.front();
+    for (const RigidTransform& motion : transforms.motions)
+        if (motion.to != first.to)
+            throw Error("the motions lead to different frames: '{}' and '{}'", first.to, motion.to);
+    const auto require_unit = [&](const RigidTransform& motion) {
+        if (motion.unit != first.unit)
+            throw Error("the motions have different units: '{}' and '{}'", symbol(first.unit), symbol(motion.unit));
+    };
+    for (const RigidTransform& motion : transforms.motions) require_unit(motion);
+    for (const PoseEdge& edge : transforms.edges) require_unit(edge.pose);
+}
+
+}  // namespace
+
+std::vector<ScanPose> poses_from_json(const Json& json, const OnWarning& warn) {
+    const auto document = from_document<PosesDocument>(json);
+    std::vector<ScanPose> poses = poses_of(document, warn);
+    edges_of(document);
+    return poses;
+}
+
 template <>
-struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<RigidTransform> {
+struct KindTraits<Transforms> : NotGeometric<Transforms>, NoProperties<Transforms> {
     static constexpr std::string_view name = "transform";
     static constexpr std::string_view json_member = "poses";
-    static void to_json(const RigidTransform& transform, Json& json) {
-        PoseDocument pose{transform.from, {}, {}, std::array<std::array<double, 4>, 4>{}, transform.rms};
-        for (std::size_t row = 0; row < 3; ++row) {
-            const auto at = static_cast<Eigen::Index>(row);
-            const auto r = transform.rotation.row(at);
-            (*pose.matrix)[row] = {r[0], r[1], r[2], transform.translation[at]};
-        }
-        json = document_of(PosesDocument{transform.unit, transform.to, {pose}});
-        json["poses"][0]["matrix"][3] = {0, 0, 0, 1};
+    static void require_usable(const Transforms& transforms) {
+        require_one_frame(transforms);
+        for (const RefusedFrame& each : transforms.refused)
+            if (each.from.empty() || each.reason.empty())
+                throw Error("a refused frame has no {}", each.from.empty() ? "name" : "reason");
     }
-    static RigidTransform from_json(const Json& document, const OnWarning& warn) {
-        const std::vector<ScanPose> poses = poses_from_json(document, warn);
-        if (poses.size() > 1) throw Error("contains {} poses; a transform is one", poses.size());
-        RigidTransform transform = poses.front().transform;
-        transform.from = poses.front().scan;
-        return transform;
+    static void to_json(const Transforms& transforms, Json& json) {
+        require_one_frame(transforms);
+        PosesDocument document{transforms.motions.front().unit, transforms.motions.front().to, {}};
+        for (const RigidTransform& motion : transforms.motions)
+            document.poses.push_back({motion.from, {}, {}, matrix_of(motion), motion.rms, {}});
+        for (const RefusedFrame& each : transforms.refused)
+            document.poses.push_back({each.from, {}, {}, {}, {}, each.reason});
+        for (const PoseEdge& edge : transforms.edges)
+            document.edges.push_back({{edge.pose.from, edge.pose.to},
+                                      matrix_of(edge.pose),
+                                      edge.pose.rms,
+                                      edge.overlap,
+                                      edge.front,
+                                      edge.missing,
+                                      edge.slide,
+                                      edge.score});
+        json = document_of(document);
+        const Json last_row{0, 0, 0, 1};  // whole numbers
+        for (Json& pose : json["poses"])
+            if (pose.contains("matrix")) pose["matrix"][3] = last_row;
+        if (json.contains("edges"))
+            for (Json& edge : json["edges"]) edge["matrix"][3] = last_row;
+    }
+    static Transforms from_json(const Json& json, const OnWarning& warn) {
+        const auto document = from_document<PosesDocument>(json);
+        Transforms transforms;
+        for (ScanPose& pose : poses_of(document, warn)) {
+            if (pose.refused) {
+                transforms.refused.push_back({std::move(pose.scan), std::move(*pose.refused)});
+                continue;
+            }
+            pose.transform.from = std::move(pose.scan);
+            transforms.motions.push_back(std::move(pose.transform));
+        }
+        transforms.edges = edges_of(document);
+        if (transforms.motions.empty())
+            throw Error("contains no motion: {}", transforms.refused.size() == 1
+                                                      ? fmt::format("'{}' is refused: {}", transforms.refused[0].from,
+                                                                    transforms.refused[0].reason)
+                                                      : fmt::format("all {} scans are refused",
+                                                                    transforms.refused.size()));
+        return transforms;
     }
     static Json schema() {
         Json schema = schema::document(name, JsonForm<PosesDocument>::schema());
-        schema["properties"]["poses"].update({{"minItems", 1}, {"maxItems", 1}});
+        schema["properties"]["poses"].update({{"minItems", 1}});
         return schema;
     }
 };
 
-template Kind kind_of<RigidTransform>();
+template Kind kind_of<Transforms>();
 
 }  // namespace scanmill

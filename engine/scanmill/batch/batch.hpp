@@ -56,6 +56,7 @@ struct BatchScan {
     std::string frame;  ///< with {stem} replaced; empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
+    std::string pose_refusal;  ///< why the pose file has no pose of the scan, whose cells fail; empty: it has one
     BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
@@ -96,7 +97,7 @@ struct Batch {
 
 /// Parses the batch in `text`. `diagnostics` belongs to the batch file. Reports all errors and returns everything that
 /// could be read. Looks for the files that the batch names and reads poses, but opens no scan. Warns about a missing
-/// truth and about a missing file of another input.
+/// truth, about a missing file of another input, and about a scan that its file of poses refuses.
 ///
 /// check_batch() finds the other errors: names in `set` and `in` that no workflow declares, and errors in `measure` and
 /// `gate` that depend on filters.

@@ -256,8 +256,8 @@ std::optional<RigidTransform> parse_pose(const YamlNode& node, Diagnostics& diag
 }
 
 /// The pose that names the scan. If the file contains only one pose, and that pose names no scan, it is the pose of the
-/// scan. Throws Error if no pose or several poses belong to the scan.
-RigidTransform pose_of(const fs::path& scan, const std::vector<ScanPose>& poses, const std::string& file) {
+/// scan. The file may refuse the scan. Throws Error if no pose or several poses belong to the scan.
+const ScanPose& pose_of(const fs::path& scan, const std::vector<ScanPose>& poses, const std::string& file) {
     std::vector<std::string> names;
     std::vector<const ScanPose*> fitting;
     for (const ScanPose& pose : poses) {
@@ -265,9 +265,9 @@ RigidTransform pose_of(const fs::path& scan, const std::vector<ScanPose>& poses,
         if (is_of(pose, scan.filename().string()) || is_of(pose, scan.stem().string())) fitting.push_back(&pose);
     }
     const std::string name = scan.filename().string();
-    if (fitting.size() == 1) return fitting.front()->transform;
+    if (fitting.size() == 1) return *fitting.front();
     if (fitting.size() > 1) throw Error("'{}': contains {} poses of '{}'; expected one", file, fitting.size(), name);
-    if (poses.size() == 1 && names.empty()) return poses.front().transform;
+    if (poses.size() == 1 && names.empty()) return poses.front();
     if (names.empty()) throw Error("'{}': contains {} poses, none of which names a scan", file, poses.size());
     throw Error("'{}': has no pose of '{}'; it has poses of {}{}", file, name, enumerated(names),
                 did_you_mean(name, names));
@@ -506,11 +506,22 @@ private:
                 auto poses = poses_.find(scan.pose_file);
                 if (poses == poses_.end())
                     poses = poses_.emplace(scan.pose_file, read_poses(scan.pose_file, warn)).first;
-                scan.pose = pose_of(scan.file, poses->second, scan.pose_file.string());
+                const ScanPose& pose = pose_of(scan.file, poses->second, scan.pose_file.string());
+                if (!pose.refused)
+                    scan.pose = pose.transform;
+                else
+                    refuse(scan, *pose.refused, position);
             } catch (const Error& error) {
                 complaints.add(error.sentence());
             }
         complaints.report("the pose", [&](std::string text) { diagnostics_.error(position, std::move(text)); });
+    }
+
+    /// The other scans still run, so this is a warning.
+    void refuse(BatchScan& scan, const std::string& reason, const Position& position) {
+        scan.pose_refusal = fmt::format("'{}': the scan '{}' has no pose, because it was refused: {}",
+                                        scan.pose_file.string(), scan.file.filename().string(), reason);
+        diagnostics_.warning(position, scan.pose_refusal);
     }
 
     fs::path folder_;

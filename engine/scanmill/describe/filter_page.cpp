@@ -118,10 +118,15 @@ std::string example_step(const FilterSpec& spec, bool whole) {
     return step;
 }
 
+/// Whether the step has `in:`. It has if a port takes several kinds.
+bool has_wiring(const FilterSpec& spec) {
+    return std::ranges::any_of(spec.inputs, [](const PortSpec& port) { return !port.also.empty(); });
+}
+
 /// `in:` for a filter with a port that only `in` can wire; empty for other filters. Every port takes the workflow input
 /// that has the name of the port.
 std::string example_wiring(const FilterSpec& spec) {
-    if (std::ranges::all_of(spec.inputs, [](const PortSpec& port) { return port.also.empty(); })) return {};
+    if (!has_wiring(spec)) return {};
     std::string wiring;
     for (const PortSpec& port : spec.inputs)
         wiring += fmt::format("{}{}: {}", wiring.empty() ? "" : ", ", port.name, port.name);
@@ -138,6 +143,7 @@ void add_step(ExampleSteps& example, const FilterSpec& spec, const FilterLibrary
     const bool is_last = example.steps.empty();
     example.steps.push_back(&spec);  // in reverse order
     for (const PortSpec& port : spec.inputs) {
+        if (port.optional && port.by_name && !has_wiring(spec)) continue;
         if (is_readable(port.kind)) {
             if (is_last || !port.optional) example.inputs.push_back(&port);
             continue;

@@ -31,6 +31,7 @@ struct ScanFile {
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
+    std::string pose_refusal;               ///< why there is no pose; if not empty, reading fails with this message
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
@@ -84,6 +85,7 @@ struct LeafSource {
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
+    std::string pose_refusal{};  ///< why there is no pose; if not empty, reading fails with this message
 };
 constexpr auto fields(const LeafSource*) {
     using R = LeafSource;
@@ -91,7 +93,7 @@ constexpr auto fields(const LeafSource*) {
                       field("kind", &R::kind),       field("unit", &R::unit),
                       field("frame", &R::frame),     field("pose", &R::pose),
                       field("invalid", &R::invalid), field("is-streamed", &R::is_streamed),
-                      field("also", &R::also)};
+                      field("also", &R::also),       field("pose-refusal", &R::pose_refusal)};
 }
 
 /// Declared unit, frame, pose and rule for invalid rows as (name, text).
@@ -106,7 +108,7 @@ struct RunNode {
     bool is_scan = false;  ///< leaves only: the file feeds the workflow's first input
     std::vector<ParameterFile> parameter_files;  ///< steps only
     bool is_uncacheable = false;  ///< the node or one upstream reads a folder or a file that cannot be hashed
-    std::string unreadable;  ///< leaves only: why the content could not be hashed
+    std::string unreadable;  ///< leaves only: why the content could not be hashed, or must not be read
     std::vector<NodeInput> inputs;
     std::size_t scan = 0;  ///< index into RunGraph::scan_names; the scan of the first cell that contains the node
 };

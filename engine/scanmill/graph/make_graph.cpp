@@ -61,7 +61,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("kind", name_of(leaf.kind))
         .field("unit", symbol(leaf.unit))
         .field("frame", leaf.frame)
-        .field("pose", leaf.pose ? text_of(*leaf.pose) : "")
+        .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.pose_refusal)
         .field("invalid", name_of(leaf.invalid));
     for (const Kind kind : leaf.also) key.field("also", name_of(kind));
     return key.key();
@@ -298,7 +298,7 @@ private:
         node.leaf.file = file.path;
         const FileContents::Content& content = contents_.of(file.path);
         node.leaf.content = content.hash;
-        node.unreadable = content.why_unreadable;
+        node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.pose_refusal;
         node.leaf.kind = declared.kind;
         node.leaf.also = declared.also;
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
@@ -306,6 +306,7 @@ private:
                                                                  : declared.unit;
         node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
         node.leaf.pose = file.pose;
+        node.leaf.pose_refusal = file.pose_refusal;
         if (declared.kind == kind_of<PointCloud>() ||
             std::ranges::find(declared.also, kind_of<PointCloud>()) != declared.also.end())
             node.leaf.invalid = file.invalid != InvalidRows::by_format        ? file.invalid

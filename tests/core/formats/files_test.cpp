@@ -91,7 +91,7 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     EXPECT_TRUE(writable_extensions(kind_of<TriangleMesh>()).starts_with("ply, stl, off, obj"));
     EXPECT_TRUE(writable_extensions(kind_of<PointCloud>()).starts_with("ply, xyz, txt"));
     EXPECT_EQ(writable_extensions(kind_of<Metrics>()), "json");
-    EXPECT_EQ(writable_extensions(kind_of<RigidTransform>()), "json");
+    EXPECT_EQ(writable_extensions(kind_of<Transforms>()), "json");
 }
 
 TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {

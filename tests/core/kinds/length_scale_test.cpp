@@ -41,7 +41,7 @@ TEST(LengthScale, MeshWithoutTriangles_IsMeasuredAsPoints) {
 }
 
 TEST(LengthScale, ValueWithoutPositions_HasNoScale) {
-    const LengthScale scale = length_scale(as_value(RigidTransform{}));
+    const LengthScale scale = length_scale(as_value(Transforms(RigidTransform{})));
     EXPECT_EQ(scale.unit, LengthUnit::unknown);
     EXPECT_EQ(scale.diagonal(), 0);
     EXPECT_EQ(scale.spacing(), 0);

@@ -32,7 +32,7 @@ TEST(Kind, EveryKind_HasItsNameItsTypeAndMaybeAFrame) {
     expect_kind<FeatureGraph>(kind_of<FeatureGraph>(), "features", true);
     expect_kind<PatchComplex>(kind_of<PatchComplex>(), "patches", true);
     expect_kind<ProbePlan>(kind_of<ProbePlan>(), "probes", true);
-    expect_kind<RigidTransform>(kind_of<RigidTransform>(), "transform", false);
+    expect_kind<Transforms>(kind_of<Transforms>(), "transform", false);
     expect_kind<Metrics>(kind_of<Metrics>(), "metrics", false);
     expect_kind<Picture>(kind_of<Picture>(), "picture", false);
 }
@@ -88,7 +88,7 @@ TEST(ReframedMesh, EverythingButPositions_IsCarried) {
 }
 
 TEST(ReframedTransform, WithoutPositions_ComesBackAsItIs) {
-    const Value transform = value_of(RigidTransform{});
+    const Value transform = value_of(Transforms(RigidTransform{}));
     EXPECT_EQ(reframed(transform, far_away), transform);
     EXPECT_FALSE(frame_of(transform).has_value());
 }

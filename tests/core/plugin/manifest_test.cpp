@@ -38,7 +38,7 @@ Manifest everything() {
     spec.ties = "The first of equals stays.";
     spec.not_finite = "Refused with their number.";
     for (const Kind kind : {kind_of<PointCloud>(), kind_of<TriangleMesh>(), kind_of<TetMesh>(), kind_of<FeatureGraph>(),
-                            kind_of<RigidTransform>(), kind_of<Metrics>(), kind_of<Picture>()})
+                            kind_of<Transforms>(), kind_of<Metrics>(), kind_of<Picture>()})
         spec.outputs.push_back({std::string(name_of(kind)), kind, "Gives one of these.", false, false});
     spec.inputs = {
         {"plain", kind_of<PointCloud>(), "Takes points.", false, false},

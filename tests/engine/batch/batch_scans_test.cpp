@@ -280,6 +280,16 @@ TEST_F(BatchScans, PoseFilesThatDoNotHelp_AreRefusedWithTheirPath) {
     EXPECT_THAT(scans("[{path: scans/a.ply, pose: absent.json}]"), ElementsAre(HasSubstr("there is no such file")));
 }
 
+TEST_F(BatchScans, RefusedScan_IsAWarning_AndHasItsReason) {
+    folder_.write("p.json", json(pose(1, "a.ply") + ",{\"scan\": \"b.ply\", \"refused\": \"no-overlap\"}"));
+    EXPECT_THAT(scans("[{path: scans/*.ply, pose: p.json}]"),
+                ElementsAre(AllOf(StartsWith("b:3:35: warning: "), HasSubstr("'b.ply'"), HasSubstr("no-overlap"))));
+    EXPECT_TRUE(batch_.scans[0].pose);
+    EXPECT_EQ(batch_.scans[0].pose_refusal, "");
+    EXPECT_FALSE(batch_.scans[1].pose);
+    EXPECT_THAT(batch_.scans[1].pose_refusal, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+}
+
 TEST_F(BatchScans, MatrixAndQuaternion_AreTheSameMotion) {
     const auto matrix = written("[[0.28, -0.96, 0, 1], [0.96, 0.28, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]");
     EXPECT_THAT(found_, IsEmpty());

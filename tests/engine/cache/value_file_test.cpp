@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "engine/cache/value_samples.hpp"
 #include "support/same_bits.hpp"
@@ -53,13 +55,56 @@ TEST_F(ValueFile, Picture_ComesBackWithPixelsAndCaption) {
     EXPECT_EQ(read.caption, original.caption);
 }
 
-TEST_F(ValueFile, TransformWithoutRms_ComesBackWithoutIt) {
-    RigidTransform original = transform();
-    EXPECT_EQ(as<RigidTransform>(through_a_file(value(original))).rms, 0.1 + 0.2);
+TEST_F(ValueFile, MotionWithoutRms_ComesBackWithoutIt) {
+    Transforms original(motion());
+    EXPECT_EQ(as<Transforms>(through_a_file(value(original))).motions.at(0).rms, 0.1 + 0.2);
     const std::string with = key_of(value(original));
-    original.rms.reset();
-    EXPECT_EQ(as<RigidTransform>(through_a_file(value(original))).rms, std::nullopt);
+    original.motions[0].rms.reset();
+    EXPECT_EQ(as<Transforms>(through_a_file(value(original))).motions.at(0).rms, std::nullopt);
     EXPECT_NE(key_of(value(original)), with);
+}
+
+void expect_same(const RigidTransform& a, const RigidTransform& b) {
+    EXPECT_EQ(std::memcmp(a.rotation.data(), b.rotation.data(), sizeof a.rotation), 0);
+    EXPECT_EQ(std::memcmp(a.translation.data(), b.translation.data(), sizeof a.translation), 0);
+    EXPECT_EQ(a.unit, b.unit);
+    EXPECT_EQ(a.from, b.from);
+    EXPECT_EQ(a.to, b.to);
+    EXPECT_EQ(a.rms, b.rms);
+}
+
+TEST_F(ValueFile, Transforms_ComeBackBitByBit) {
+    const Transforms original = transforms();
+    const Value back = through_a_file(value(original));
+    const auto& read = as<Transforms>(back);
+    ASSERT_EQ(read.motions.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) expect_same(read.motions[i], original.motions[i]);
+    ASSERT_EQ(read.refused.size(), 1u);
+    EXPECT_EQ(read.refused[0].from, "c");
+    EXPECT_EQ(read.refused[0].reason, "no-overlap: at most 12 %");
+    ASSERT_EQ(read.edges.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const PoseEdge &a = read.edges[i], &b = original.edges[i];
+        expect_same(a.pose, b.pose);
+        const auto numbers = [](const PoseEdge& edge) {
+            return std::array{edge.overlap, edge.front, edge.missing, edge.slide, edge.score};
+        };
+        EXPECT_EQ(numbers(a), numbers(b));
+        EXPECT_EQ(std::signbit(a.missing), std::signbit(b.missing));
+    }
+}
+
+TEST_F(ValueFile, TransformsThatDiffer_HaveDifferentKeys) {
+    const std::string key = key_of(value(transforms()));
+    Transforms other = transforms();
+    other.refused[0].reason += " or less";
+    EXPECT_NE(key_of(value(other)), key);
+    other = transforms();
+    other.edges[1].score = 0.5;
+    EXPECT_NE(key_of(value(other)), key);
+    other = transforms();
+    other.motions[1].from = "b";
+    EXPECT_NE(key_of(value(other)), key);
 }
 
 TEST_F(ValueFile, Points_ComeBackBitByBit) {
@@ -103,15 +148,7 @@ TEST_F(ValueFile, TetsAndFeatures_ComeBackBitByBit) {
     EXPECT_EQ(graph.left_normals[3], Vec3(0, 0, 1));
 }
 
-TEST_F(ValueFile, TransformAndMetrics_ComeBackBitByBit) {
-    const Value transform_back = through_a_file(value(transform()));
-    const auto& read = as<RigidTransform>(transform_back);
-    EXPECT_EQ(read.rotation, transform().rotation);
-    EXPECT_EQ(read.translation, transform().translation);
-    EXPECT_TRUE(std::signbit(read.translation.z()));
-    EXPECT_EQ(read.unit, LengthUnit::inch);
-    EXPECT_EQ(read.from, "a");
-    EXPECT_EQ(read.to, "");
+TEST_F(ValueFile, Metrics_ComeBackBitByBit) {
     const Value metrics_back = through_a_file(value(metrics()));
     EXPECT_TRUE(std::isnan(as<Metrics>(metrics_back).find("rms")->value));
     EXPECT_EQ(as<Metrics>(metrics_back).find("gap")->value, -infinity);

@@ -102,7 +102,7 @@ inline ProbePlan probes() {
     return plan;
 }
 
-inline RigidTransform transform() {
+inline RigidTransform motion() {
     RigidTransform transform;
     transform.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     transform.translation = Vec3(0.1, 1e300, -0.0);
@@ -110,6 +110,19 @@ inline RigidTransform transform() {
     transform.from = "a";
     transform.rms = 0.1 + 0.2;
     return transform;
+}
+
+inline Transforms transforms() {
+    Transforms transforms(motion());
+    RigidTransform second = motion();
+    second.from = "b \xff";
+    second.rms.reset();
+    second.translation = Vec3(-0.0, 1e-310, 1. / 3);
+    transforms.motions.push_back(second);
+    transforms.refused = {{"c", "no-overlap: at most 12 %"}};
+    transforms.edges = {{second, 0.1 + 0.2, 5e-324, -0.0, 1. / 3, 0.7}, {motion(), 1, 0, 0, 0, 1}};
+    transforms.edges[0].pose.to = "a";
+    return transforms;
 }
 
 inline Metrics metrics() {
@@ -120,7 +133,7 @@ inline Picture picture() { return {3, 2, Array<Colour>(6, Colour{0, 255, 7}), "A
 
 inline std::vector<Value> one_of_each_kind() {
     return {value(cloud()),  value(mesh()),      value(tets()),    value(features()), value(patches()),
-            value(probes()), value(transform()), value(metrics()), value(picture())};
+            value(probes()), value(transforms()), value(metrics()), value(picture())};
 }
 
 /// The hash of everything that the value holds.

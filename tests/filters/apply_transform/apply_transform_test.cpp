@@ -27,7 +27,7 @@ RigidTransform to_machine() {
     return motion;
 }
 
-Value applied(const Value& value, const RigidTransform& motion, std::vector<std::string>* warnings = nullptr) {
+Value applied(const Value& value, const Transforms& motion, std::vector<std::string>* warnings = nullptr) {
     Context context;
     Value result = apply_transform(value, motion, context);
     if (warnings) *warnings = context.warnings();
@@ -43,7 +43,7 @@ Value in_frame(T object, std::string name, LengthUnit unit = LengthUnit::unknown
 
 Vec3 world(const Value& value, std::size_t row) { return frame_of(value)->origin + positions_of(value)[row]; }
 
-Error refusal(const Value& value, const RigidTransform& motion) {
+Error refusal(const Value& value, const Transforms& motion) {
     const Error error = error_of([&] { applied(value, motion); });
     EXPECT_FALSE(error.hint().empty()) << error.sentence();
     return error;
@@ -167,6 +167,25 @@ TEST(ApplyTransform, AnotherFrame_IsRefused) {
     within.to = "scanner";
     EXPECT_EQ(refusal(in_frame(cloud(plate()), "part"), within).sentence(),
               "the value is in the frame 'part'; the transform starts from 'scanner'");
+}
+
+TEST(ApplyTransform, AListOfMotions_MovesByThatOfTheFrame) {
+    Transforms list(to_machine());
+    list.motions.push_back(to_machine());
+    list.motions[1].from = "second";
+    list.motions[1].translation = Vec3(0, 0, 5);
+    list.refused = {{"third", "no-overlap"}};
+    const PointCloud points = cloud({{1, 2, 3}});
+    EXPECT_EQ(world(applied(in_frame(points, "scanner"), list), 0), Vec3(8, 1, 3));
+    EXPECT_EQ(world(applied(in_frame(points, "second"), list), 0), Vec3(-2, 1, 8));
+    EXPECT_THAT(refusal(in_frame(points, "third"), list).sentence(), HasSubstr("refused: no-overlap"));
+    EXPECT_THAT(refusal(in_frame(points, "part"), list).sentence(), HasSubstr("scanner and second"));
+    EXPECT_THAT(refusal(in_frame(points, ""), list).sentence(), HasSubstr("no name"));
+    EXPECT_EQ(refusal(in_frame(points, "machine"), list).sentence(),
+              "the value is already in the frame 'machine', the target frame of the transform");
+    // The first view's own frame may be the frame of all.
+    list.motions[0].from = "machine";
+    EXPECT_EQ(world(applied(in_frame(points, "machine"), list), 0), Vec3(8, 1, 3));
 }
 
 TEST(ApplyTransform, AMotionWithinOneFrame_MayBeRepeated) {

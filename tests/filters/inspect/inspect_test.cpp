@@ -241,7 +241,11 @@ TEST(Inspect, Transform_IsReportedButNotApplied) {
     RigidTransform transform;
     transform.translation = Vec3(1, 2, 3);
     transform.rms = 0.012;
-    const Inspection with = inspect(scan, rectangle(2, 1), &transform, params_with(), context);
+    const auto inspect_with = [&](const PointCloud& points, const TriangleMesh& nominal) {
+        const Transforms transforms(transform);
+        return inspect(points, nominal, &transforms, params_with(), context);
+    };
+    const Inspection with = inspect_with(scan, rectangle(2, 1));
     EXPECT_EQ(metric(with, "aligned"), 1);
     EXPECT_EQ(metric(with, "alignment-rms"), 0.012);
     EXPECT_DOUBLE_EQ(with.numbers.mean, 0.1);
@@ -252,7 +256,20 @@ TEST(Inspect, Transform_IsReportedButNotApplied) {
     TriangleMesh nominal = rectangle(2, 1);
     in_millimetres.frame.unit = nominal.frame.unit = LengthUnit::millimetre;
     transform.unit = LengthUnit::micrometre;
-    EXPECT_DOUBLE_EQ(*inspect(in_millimetres, nominal, &transform, params_with(), context).alignment_rms, 0.012e-3);
+    EXPECT_DOUBLE_EQ(*inspect_with(in_millimetres, nominal).alignment_rms, 0.012e-3);
+}
+
+TEST(Inspect, TransformOfSeveralMotions_ReportsNoRms) {
+    Context context;
+    RigidTransform first, second;
+    first.from = "a";
+    second.from = "b";
+    first.rms = second.rms = 0.012;
+    Transforms transforms(first);
+    transforms.motions.push_back(second);
+    const Inspection found = inspect(cloud({{1, 0.5, 0.1}}), rectangle(2, 1), &transforms, params_with(), context);
+    EXPECT_EQ(metric(found, "aligned"), 1);
+    EXPECT_FALSE(has_metric(found, "alignment-rms"));
 }
 
 TEST(Inspect, Columns_OfTheScanAreCarried) {
