@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "scanmill/base/random.hpp"
+
 namespace scanmill {
 namespace {
 
@@ -23,6 +25,17 @@ TEST(Scatter, OfAFlatSquare_HasNoRoughness) {
     const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     EXPECT_EQ(scatter_of(square).surface_variation, 0);
     EXPECT_NEAR(scatter_of(square).flatness, 0.25, 1e-15);
+}
+
+TEST(Scatter, OfPointsOnALine_HasANormalAcrossTheLine) {
+    // The moments of points on a line have rounding errors only where the least two variances are.
+    Random random(1);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 along(random.normal(), random.normal(), random.normal());
+        const Vec3 normal = scatter_of(std::vector<Vec3>{Vec3::Zero(), along, 0.31 * along}).normal;
+        EXPECT_NEAR(normal.norm(), 1, 1e-12);
+        EXPECT_NEAR(normal.dot(along.normalized()), 0, 1e-6);
+    }
 }
 
 TEST(Scatter, OfOnePlace_IsNothing) {

@@ -39,6 +39,9 @@ Moments moments_about(const Vec3& centroid, std::span<const Vec3> points) {
 /// enough.
 double least_eigenvalue(const Moments& m) {
     const double trace = m.trace(), minors = m.sum_of_minors(), determinant = m.determinant();
+    // Of points on a line, minors and determinant are rounding errors, and their quotients have any size.
+    constexpr double rounding = 1e-14;
+    if (!(minors > rounding * trace * trace)) return 0;
     double root = 0;
     for (int step = 0; step < 50; ++step) {
         const double value = ((root - trace) * root + minors) * root - determinant;

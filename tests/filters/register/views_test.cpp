@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Views of a landscape, and views that must be refused.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <limits>
+
+#include "filters/register/cases.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+/// Three strips of a landscape, each of which overlaps the next by more than half.
+std::vector<View> strips() {
+    return {height_view("left", 0, 120, 0, 100, hills, 0.1, 1), height_view("middle", 50, 170, 0, 100, hills, 0.1, 2),
+            height_view("right", 100, 225, 0, 100, hills, 0.1, 3)};
+}
+
+TEST(RegisterViews, StripsOfALandscape_AreAllPlaced) {
+    const std::vector<View> views = in_random_frames(strips(), 1, 100);
+    const RegisterViewsResult result = registered(views);
+    EXPECT_EQ(result.placed, 3u);
+    for (const double error : errors_of(result, views)) EXPECT_LT(error, 0.2), EXPECT_GE(error, 0);
+    EXPECT_EQ(result.views[0].pose->rotation, Eigen::Matrix3d::Identity());
+    EXPECT_EQ(result.views[0].pose->translation, Vec3::Zero());
+    EXPECT_GT(result.views[1].overlap, 0.5);
+    EXPECT_GT(result.confidence, 0.3);
+    EXPECT_LT(result.rms, 0.2);
+}
+
+TEST(RegisterViews, AnyNumberOfThreads_GivesTheSameBits) {
+    const std::vector<View> views = in_random_frames(strips(), 1, 100);
+    const RegisterViewsResult one = registered(views, {}, 1);
+    for (const unsigned threads : {2u, 8u}) {
+        const RegisterViewsResult other = registered(views, {}, threads);
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            EXPECT_EQ(one.views[i].pose->rotation, other.views[i].pose->rotation);
+            EXPECT_EQ(one.views[i].pose->translation, other.views[i].pose->translation);
+        }
+    }
+}
+
+TEST(RegisterViews, AnotherOrder_GivesTheSameRelativePoses) {
+    std::vector<View> views = in_random_frames(strips(), 1, 100);
+    const RegisterViewsResult one = registered(views);
+    std::ranges::reverse(views);
+    const RegisterViewsResult other = registered(views);
+    const RigidMotion before = one.views[0].pose->then(one.views[1].pose->inverse()),
+                      after = other.views[2].pose->then(other.views[1].pose->inverse());
+    EXPECT_LT(displacement(before, after, Vec3::Zero(), 200), 1e-9);
+}
+
+TEST(RegisterViews, AnotherStart_GivesTheSamePoses) {
+    for (const u64 seed : {2u, 3u}) {
+        const std::vector<View> views = in_random_frames(strips(), seed, 100);
+        const std::vector<double> errors = errors_of(registered(views), views),
+                                  first = errors_of(registered(strips()), strips());
+        for (std::size_t i = 0; i < views.size(); ++i) EXPECT_NEAR(errors[i], first[i], 0.02);
+    }
+}
+
+TEST(RegisterViews, RightStarts_AreRefined_AndAWrongOneIsRefused) {
+    std::vector<View> views = in_random_frames(strips(), 1, 100);
+    const std::vector<double> searched = errors_of(registered(views), views);
+    for (View& view : views) view.start = view.truth;
+    const std::vector<double> started = errors_of(registered(views), views);
+    for (std::size_t i = 0; i < views.size(); ++i) EXPECT_NEAR(started[i], searched[i], 0.05);
+    views[2].start->translation += Vec3(-40, 25, 0);
+    const RegisterViewsResult result = registered(views);
+    EXPECT_EQ(result.placed, 2u);
+    EXPECT_FALSE(result.views[2].pose);
+}
+
+TEST(RegisterViews, PosesAsTheyAre_AreKeptBitForBit_UnlessTheyAreWrong) {
+    std::vector<View> views = strips();
+    RegisterViewsParams params;
+    params.as_is = true;
+    const RegisterViewsResult kept = registered(views, params);
+    EXPECT_TRUE(kept.kept_as_is);
+    for (const RegisteredView& view : kept.views) EXPECT_EQ(view.pose->translation, Vec3::Zero());
+    for (Vec3& p : views[1].points) p.z() += 50;
+    const RegisterViewsResult moved = registered(views, params);
+    EXPECT_FALSE(moved.kept_as_is);
+    EXPECT_TRUE(moved.contradicting);
+    EXPECT_EQ(moved.placed, 3u);
+    // Views far apart do not contradict each other, but nothing confirms them either.
+    EXPECT_FALSE(registered(in_random_frames(strips(), 1, 1e4), params).kept_as_is);
+}
+
+TEST(RegisterViews, OneView_StaysWhereItIs) {
+    const RegisterViewsResult result = registered({strips()[0]});
+    EXPECT_EQ(result.placed, 1u);
+    EXPECT_EQ(result.views[0].pose->translation, Vec3::Zero());
+}
+
+TEST(RegisterViews, AViewOfAnotherObject_IsRefusedAndChangesNothing) {
+    std::vector<View> views = in_random_frames(strips(), 1, 100);
+    const std::vector<double> before = errors_of(registered(views), views);
+    views.push_back(height_view("stranger", 0, 110, 0, 100, [](double x, double y) {
+        return 12 * std::cos(x / 7) * std::cos(y / 11) + 0.002 * x * y;
+    }));
+    const RegisterViewsResult result = registered(views);
+    EXPECT_EQ(result.placed, 3u);
+    EXPECT_FALSE(result.views[3].pose);
+    EXPECT_NE(result.views[3].refusal, ViewRefusal::none);
+    const std::vector<double> after = errors_of(result, views);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(after[i], before[i], 0.02);
+}
+
+TEST(RegisterViews, WithoutOverlap_AreRefused) {
+    const RegisterViewsResult result = registered(
+        {height_view("one", 0, 100, 0, 100, hills), height_view("far", 1000, 1100, 500, 600, hills)});
+    EXPECT_EQ(result.placed, 0u);
+    for (const RegisteredView& view : result.views)
+        EXPECT_THAT(view.refusal, testing::AnyOf(ViewRefusal::no_overlap, ViewRefusal::contradicts));
+}
+
+TEST(RegisterViews, ThatShareOnlyAPlane_Slide) {
+    const auto flat = [](double, double) { return 0.0; };
+    const RegisterViewsResult result = registered(
+        {height_view("one", 0, 100, 0, 100, flat, 0.3, 1), height_view("two", 10, 110, 0, 101, flat, 0.3, 2)});
+    EXPECT_EQ(result.placed, 0u);
+    for (const RegisteredView& view : result.views) {
+        EXPECT_EQ(view.refusal, ViewRefusal::slides);
+        EXPECT_LT(view.best.slide, 0.002);
+        EXPECT_GE(view.best.free_directions, 3u);
+    }
+}
+
+TEST(RegisterViews, InAnotherUnit_AreNamed) {
+    std::vector<View> views = in_random_frames(strips(), 1, 100);
+    for (Vec3& p : views[2].points) p *= 25.4;
+    const RegisterViewsResult result = registered(views);
+    EXPECT_EQ(result.placed, 2u);
+    EXPECT_NEAR(result.views[2].scale.value(), 25.4, 2);
+    EXPECT_EQ(result.views[2].units, "millimetres and inches");
+}
+
+TEST(RegisterViews, AThousandTinyViews_AreRefusedAtOnce) {
+    std::vector<View> views;
+    for (int i = 0; i < 1000; ++i) views.push_back({"tiny", {{1, 0, 0.1 * i}, {0, 1, 0}, {0, 0, 1}}});
+    const auto begin = std::chrono::steady_clock::now();
+    const RegisterViewsResult result = registered(views);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    EXPECT_EQ(result.placed, 0u);
+    for (const RegisteredView& view : result.views) EXPECT_EQ(view.refusal, ViewRefusal::small);
+}
+
+struct Refusal {
+    const char* name;
+    std::vector<Vec3> points;
+    const char* words;
+};
+
+class RegisterRefusals : public testing::TestWithParam<Refusal> {};
+
+TEST_P(RegisterRefusals, NameTheView) {
+    std::vector<View> views = strips();
+    views.push_back({"bad view", GetParam().points});
+    const Error error = error_of([&] { registered(views); });
+    EXPECT_THAT(error.sentence(), testing::HasSubstr("'bad view'"));
+    EXPECT_THAT(error.sentence(), testing::HasSubstr(GetParam().words));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Views, RegisterRefusals,
+    testing::Values(Refusal{"Empty", {}, "no points"}, Refusal{"TwoPoints", {{0, 0, 0}, {1, 0, 0}}, "2 points"},
+                    Refusal{"NotFinite", {{0, 0, 0}, {1, 0, 0}, {0, std::numeric_limits<double>::quiet_NaN(), 0}}, "row 3"},
+                    Refusal{"Equal", {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, "equal"},
+                    Refusal{"OnALine", {{1, 2, 3}, {2, 4, 6}, {3, 6, 9}, {7, 14, 21}}, "on a line"}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(RegisterViews, NoViewAndEqualViews_AreErrors) {
+    EXPECT_THAT(sentence_of([] { registered({}); }), testing::HasSubstr("no view"));
+    std::vector<View> views = strips();
+    views.push_back(views[1]);
+    views.back().name = "again";
+    const std::string sentence = sentence_of([&] { registered(views); });
+    EXPECT_THAT(sentence, testing::HasSubstr("'middle'"));
+    EXPECT_THAT(sentence, testing::HasSubstr("'again'"));
+}
+
+TEST(RegisterViews, ThatWouldBeTooManyPairs_AreAnErrorWithTheNumber) {
+    std::vector<View> views;
+    for (int i = 0; i < 102; ++i) views.push_back(height_view("view", 0, 8, 0, 8 + i, hills));
+    EXPECT_THAT(sentence_of([&] { registered(views); }), testing::HasSubstr("5151"));
+}
+
+TEST(RegisterViews, Cancelled_Stop) {
+    const std::vector<View> views = strips();
+    std::vector<ViewToRegister> input;
+    for (const View& view : views) input.push_back({view.name, view.points, view.to_scanner, {}});
+    ExecutionOptions options;
+    options.is_cancelled = [] { return true; };
+    Execution execution(options);
+    EXPECT_THROW(register_views(input, {}, execution), Cancelled);
+}
+
+}  // namespace
+}  // namespace scanmill::test
