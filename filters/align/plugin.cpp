@@ -33,7 +33,7 @@ SCANMILL_FILTER() {
         .in<PointCloud, TriangleMesh>(
             "part", "The part that will be moved, in the source's frame; for `error-at-part`.", optional)
         .out<Transforms>("transform",
-                             "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
+                         "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
         .choice("scale", &P::scale,
                 {{"none", P::Scale::none, "The scale is not checked, and the metric `scale` is not computed."},
                  {"report", P::Scale::report,

@@ -9,8 +9,9 @@
 namespace scanmill {
 
 /// Moves the value by the motion that starts from its frame (Transforms::motion_from()) into the frame `to` of all
-/// motions, by placed() (scanmill/kinds/value.hpp). Positions are rotated, and the frame's origin is translated, so that large coordinates keep their digits. Directions and the columns `normal`,
-/// `approach` and `corner-normals` are rotated. Rows keep their order, and nothing else changes.
+/// motions, by placed() (scanmill/kinds/value.hpp). Positions are rotated, and the frame's origin is translated, so
+/// that large coordinates keep their digits. Directions and the columns `normal`, `approach` and `corner-normals` are
+/// rotated. Rows keep their order, and nothing else changes.
 ///
 /// Throws Error in these cases:
 /// - The value is in another frame than those from which motions start, or already in `to`, if the names are known.

@@ -29,13 +29,14 @@ Declare<ApplyTransformParams> declaration() {
         .source("Wang 2006, chapter 5")
         .ties("None: every position is moved independently.")
         .not_finite("They are carried along; NaN stays NaN.")
-        .in<Transforms>("transform", "The motion from the frame of the value to another frame, or a list with this motion.")
+        .in<Transforms>("transform",
+                        "The motion from the frame of the value to another frame, or a list with this motion.")
         .made_by("align");
     return Geometry::declare(filter)
         .out_like("value", "value", "The value in the target frame of the transform.")
         .run([](const Inputs& inputs, const ApplyTransformParams&, Context& context) {
-            return Outputs().set(
-                "value", apply_transform(Geometry::at(inputs), inputs.get<Transforms>("transform"), context));
+            return Outputs().set("value",
+                                 apply_transform(Geometry::at(inputs), inputs.get<Transforms>("transform"), context));
         });
 }
 

@@ -31,7 +31,7 @@ SCANMILL_FILTER() {
                                       "should be within 2 % of the "
                                       "diagonal and 2 degrees of its pose on it.")
         .out<Transforms>("transform",
-                             "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
+                         "From the frame of the source to that of the target; it never scales. Contains the `rms`.")
         .param("max-distance", &P::max_distance,
                "Points farther than this from the target have no pair; `auto` is 5 % of the smaller diagonal. Within "
                "it, the filter finds by itself which residuals are too large to count.",

@@ -51,7 +51,7 @@ Filter declaration() {
         .in<PointCloud, TriangleMesh>("scan", "The measured part: points, or a mesh whose vertices are measured.")
         .in<TriangleMesh>("nominal", "The surface that the part should have, in the frame and unit of the scan.")
         .in<Transforms>("transform", "The motion that aligned the scan; not applied, only its rms is reported.",
-                            optional, by_name)
+                        optional, by_name)
         .out<Metrics>("metrics", "All metrics, lengths in the unit of the scan.")
         .out_like("deviation", "scan",
                   "The scan with the columns `deviation` (NaN for points without one), `label` (0 without), `part` "

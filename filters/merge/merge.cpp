@@ -28,8 +28,8 @@ void require_one_unit(Inputs inputs, Numbers numbers) {
     const LengthUnit first = inputs.front()->frame.unit;
     for (std::size_t input = 1; input < inputs.size(); ++input)
         if (const LengthUnit unit = inputs[input]->frame.unit; unit != first)
-            throw Error("the inputs have different units: {} in input {}, {} in input {}", unit_text(first),
-                        numbers[0], unit_text(unit), numbers[input])
+            throw Error("the inputs have different units: {} in input {}, {} in input {}", unit_text(first), numbers[0],
+                        unit_text(unit), numbers[input])
                 .hint(first == LengthUnit::unknown || unit == LengthUnit::unknown
                           ? "declare the unit of all inputs, for example as `unit: mm` at the workflow's input"
                           : "convert one of them")
@@ -100,8 +100,8 @@ void warn_of_names(Inputs inputs, Numbers numbers, Context& context) {
     context.warn(fmt::format(
         "{} of {} inputs have another frame than '{}', the frame of the first input; one of them is input {} in '{}'. "
         "Without poses, all inputs are assumed to be in the same frame",
-        std::ranges::count_if(inputs, differs), inputs.size(), first, numbers[static_cast<std::size_t>(other - inputs.begin())],
-        (*other)->frame.name));
+        std::ranges::count_if(inputs, differs), inputs.size(), first,
+        numbers[static_cast<std::size_t>(other - inputs.begin())], (*other)->frame.name));
 }
 
 /// Maps p to rotation p + shift.
@@ -189,7 +189,8 @@ std::vector<std::shared_ptr<const PointCloud>> with_default(Inputs inputs, doubl
 std::vector<u32> numbers_of(Inputs inputs, const std::vector<u32>& given) {
     if (inputs.empty()) throw Error("there are no clouds; merging needs at least one");
     if (!given.empty()) {
-        if (given.size() != inputs.size() || std::ranges::adjacent_find(given, std::ranges::greater_equal()) != given.end())
+        if (given.size() != inputs.size() ||
+            std::ranges::adjacent_find(given, std::ranges::greater_equal()) != given.end())
             throw Error("the numbers of the inputs must be one per input and ascend");
         return given;
     }

@@ -23,9 +23,10 @@ Assigned by_order(std::size_t frames, std::span<const ScanPose> poses) {
     // Programs write refused scans behind the others, so the order does not assign the poses.
     if (const auto refused = std::ranges::find_if(poses, [](const ScanPose& pose) { return pose.refused.has_value(); });
         refused != poses.end())
-        throw Error("'{}' and perhaps other scans are refused, and the frames of the inputs have no names that show "
-                    "which inputs these are",
-                    refused->scan)
+        throw Error(
+            "'{}' and perhaps other scans are refused, and the frames of the inputs have no names that show "
+            "which inputs these are",
+            refused->scan)
             .hint("name frames after their files: `frame: \"{stem}\"` at the workflow's input");
     if (frames != poses.size())
         throw Error("there are {} poses for {} inputs; inputs whose frames have no name use the poses in order",

@@ -21,11 +21,11 @@ namespace scanmill::merging {
 /// The motions as poses, then the refused frames. The name of a scan is that of its frame.
 std::vector<ScanPose> scan_poses_of(const Transforms& transforms);
 
-/// The pose of every frame, nullopt for refused scans. A frame with a name gets the pose whose scan has that name, with or without folder and
-/// extension. Warns of refused scans with their reasons, of unused poses, and of poses used several times. If no frame
-/// has a name, the n-th frame gets the n-th pose. Throws Error if only some frames have names, if a frame with a name
-/// has no pose or several, if frames without names and poses differ in number, if there are refused scans and frames
-/// without names, and if all scans are refused.
+/// The pose of every frame, nullopt for refused scans. A frame with a name gets the pose whose scan has that name, with
+/// or without folder and extension. Warns of refused scans with their reasons, of unused poses, and of poses used
+/// several times. If no frame has a name, the n-th frame gets the n-th pose. Throws Error if only some frames have
+/// names, if a frame with a name has no pose or several, if frames without names and poses differ in number, if there
+/// are refused scans and frames without names, and if all scans are refused.
 std::vector<std::optional<RigidTransform>> poses_of(std::span<const Frame> frames, std::span<const ScanPose> poses,
                                                     Context& context);
 

@@ -29,38 +29,9 @@ void for_each_joined(const ReducedView& from, const ReducedView& to, const Rigid
     for (u32 i = 0; i < from.points.size(); ++i) {
         const Vec3 point = motion.apply(from.points[i]);
         const u32 partner = to.nearest.nearest(point, distance);
-        if (partner != NearestWithin::none &&
-            motion.turned(from.normals[i]).dot(to.normals[partner]) > least_product)
+        if (partner != NearestWithin::none && motion.turned(from.normals[i]).dot(to.normals[partner]) > least_product)
             action(i, point, partner);
     }
-}
-
-RigidMotion refined(const ReducedView& from, const ReducedView& to, RigidMotion motion) {
-    Array<Vec3> before, after;
-    for (const double distance : point_rounds) {
-        before.clear(), after.clear();
-        for_each_joined(from, to, motion, distance * to.resolution, refined_product,
-                        [&](u32 i, const Vec3&, u32 partner) {
-                            before.push_back(from.points[i]);
-                            after.push_back(to.points[partner]);
-                        });
-        if (before.size() < least_pairs) return motion;
-        motion = fitted_motion(before, after);
-    }
-    std::vector<PlanePair> pairs;
-    for (const double distance : plane_rounds) {
-        pairs.clear();
-        for_each_joined(from, to, motion, distance * to.resolution, refined_product,
-                        [&](u32, const Vec3& point, u32 partner) {
-                            const Vec3& normal = to.normals[partner];
-                            pairs.push_back({point, normal, (point - to.points[partner]).dot(normal)});
-                        });
-        if (pairs.size() < least_pairs) return motion;
-        // Directions along which the surfaces slide would move without limit.
-        constexpr double least_eigenvalue = 1e-4;
-        motion = orthonormal(motion.then(plane_equations(pairs).motion(least_eigenvalue)));
-    }
-    return motion;
 }
 
 /// Counts of one direction: the points of `from` seen from the scanner of `to`.
@@ -82,8 +53,8 @@ Counts counted(const ReducedView& from, const ReducedView& to, const RigidMotion
         if (has_partner[i]) continue;
         const Vec3 point = motion.apply(from.points[i]);
         counts.front += to.sight.place_of(point) == SightLines::Place::in_front;
-        counts.missing += motion.turned(from.normals[i]).dot(to.sight.to_scanner()) > least_facing &&
-                          to.sight.is_empty_at(point);
+        counts.missing +=
+            motion.turned(from.normals[i]).dot(to.sight.to_scanner()) > least_facing && to.sight.is_empty_at(point);
     }
     return counts;
 }
@@ -100,11 +71,40 @@ bool is_better(const Candidate& one, const Candidate& other) {
 
 }  // namespace
 
+RigidMotion refined(const ReducedView& first, const ReducedView& second, RigidMotion motion) {
+    Array<Vec3> before, after;
+    for (const double distance : point_rounds) {
+        before.clear(), after.clear();
+        for_each_joined(first, second, motion, distance * second.resolution, refined_product,
+                        [&](u32 i, const Vec3&, u32 partner) {
+                            before.push_back(first.points[i]);
+                            after.push_back(second.points[partner]);
+                        });
+        if (before.size() < least_pairs) return motion;
+        motion = fitted_motion(before, after);
+    }
+    std::vector<PlanePair> pairs;
+    for (const double distance : plane_rounds) {
+        pairs.clear();
+        for_each_joined(first, second, motion, distance * second.resolution, refined_product,
+                        [&](u32, const Vec3& point, u32 partner) {
+                            const Vec3& normal = second.normals[partner];
+                            pairs.push_back({point, normal, (point - second.points[partner]).dot(normal)});
+                        });
+        if (pairs.size() < least_pairs) return motion;
+        // Directions along which the surfaces slide would move without limit.
+        constexpr double least_eigenvalue = 1e-4;
+        motion = orthonormal(motion.then(plane_equations(pairs).motion(least_eigenvalue)));
+    }
+    return motion;
+}
+
 Verdict verdict_of(const PairMeasures& measures, double least_overlap) {
     if (!(measures.overlap >= least_overlap)) return Verdict::no_overlap;
+    // Where surfaces slide, any position is as good as another one, and contradictions say nothing.
+    if (!(measures.slide >= least_slide)) return Verdict::slides;
     if (!(measures.front <= largest_front)) return Verdict::contradicts;
-    if (!(measures.missing <= largest_missing)) return Verdict::missing;
-    return measures.slide >= least_slide ? Verdict::accepted : Verdict::slides;
+    return measures.missing <= largest_missing ? Verdict::accepted : Verdict::missing;
 }
 
 PairMeasures measured(const ReducedView& first, const ReducedView& second, const RigidMotion& motion) {

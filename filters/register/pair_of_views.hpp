@@ -16,8 +16,8 @@ struct PairMeasures {
     /// Share of points that face the other view's scanner where that has no points, among these and those with a
     /// partner.
     double missing = 0;
-    /// Smallest eigenvalue of the matrix of plane_equations() over the points with a partner. Near 0, the surfaces slide
-    /// on each other.
+    /// Smallest eigenvalue of the matrix of plane_equations() over the points with a partner. Near 0, the surfaces
+    /// slide on each other.
     double slide = 0;
     /// Number of eigenvalues below `least_slide`.
     u32 free_directions = 0;
@@ -28,11 +28,11 @@ struct PairMeasures {
 /// A pose is accepted within these limits. Wrong poses of scanned views have a `front` of 0.05 and more, right ones at
 /// most 0.021; right ones of virtual scans of flat parts reach 0.03.
 inline constexpr double largest_front = 0.03, largest_missing = 0.10;
-/// With noise of half a spacing, planes, spheres, cylinders and bodies of revolution have a `slide` of 0 to 0.0005; parts
-/// that do not slide have 0.0022 and more.
+/// With noise of half a spacing, planes, spheres, cylinders and bodies of revolution have a `slide` of 0 to 0.0005;
+/// parts that do not slide have 0.0022 and more.
 inline constexpr double least_slide = 0.002;
 
-enum class Verdict { accepted, no_overlap, contradicts, missing, slides, misfit };
+enum class Verdict { accepted, no_overlap, slides, contradicts, missing, misfit };
 /// The first limit that the measures exceed, in the order of Verdict; never `misfit`, which the full views decide.
 Verdict verdict_of(const PairMeasures& measures, double least_overlap);
 
@@ -61,6 +61,9 @@ struct PairParams {
 
 /// Measures the views at a relative pose from the first view to the second.
 PairMeasures measured(const ReducedView& first, const ReducedView& second, const RigidMotion& motion);
+
+/// Refines a relative pose with the reduced points: point to point, then point to plane, with decreasing tolerances.
+RigidMotion refined(const ReducedView& first, const ReducedView& second, RigidMotion motion);
 
 /// Searches the relative pose of two views with the same resolution. With `start`, this is the only hypothesis.
 /// Ties: of equal scores the candidate with more votes counts. Cost: about 0.1 s for views of 1,000 reduced points.

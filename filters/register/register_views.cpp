@@ -42,8 +42,8 @@ constexpr u32 last_rounds = 50;
 constexpr double settled = 0.01;  ///< in spacings
 /// In spacings, and in multiples of the noise of the noisiest view.
 constexpr double last_tolerance = 3, noise_multiple = 4;
-/// The least share of points on the other view's surface, among those near it. Right pairs with enough overlap have 0.90
-/// and more; parts that are turned by their symmetry but for details have up to 0.80.
+/// The least share of points on the other view's surface, among those near it. Right pairs with enough overlap have
+/// 0.90 and more; parts that are turned by their symmetry but for details have up to 0.80.
 constexpr double least_agreement = 0.87;
 
 struct Edge {
@@ -55,8 +55,7 @@ struct Edge {
 class Registration {
 public:
     Registration(std::span<const ViewToRegister* const> views, std::span<const std::unique_ptr<ViewSurface>> surfaces,
-                 double spacing, double resolution,
-                 const RegisterViewsParams& params, Execution& execution)
+                 double spacing, double resolution, const RegisterViewsParams& params, Execution& execution)
         : views_(views),
           surfaces_(surfaces),
           resolution_(resolution),
@@ -136,7 +135,8 @@ private:
         });
         for (const Edge& pair : pairs_) {
             const auto count = [&](Verdict verdict) {
-                return static_cast<std::size_t>(std::ranges::count(pair.result.candidates, verdict, &Candidate::verdict));
+                return static_cast<std::size_t>(
+                    std::ranges::count(pair.result.candidates, verdict, &Candidate::verdict));
             };
             result.dropped_front += count(Verdict::contradicts);
             result.dropped_missing += count(Verdict::missing);
@@ -153,7 +153,8 @@ private:
         const RelaxationStage stages[] = {{resolution_ / 2, 3}, {resolution_ / 4, 3}, {close_, 4}};
         for (Candidate& candidate : pair.result.candidates) {
             if (candidate.verdict != Verdict::accepted) continue;
-            candidate.motion = relaxed(surfaces, {RigidMotion(), candidate.motion}, both, stages, settled_, execution_).poses[1];
+            candidate.motion =
+                relaxed(surfaces, {RigidMotion(), candidate.motion}, both, stages, settled_, execution_).poses[1];
             candidate.measures = measured(first, second, candidate.motion);
             candidate.verdict = verdict_of(candidate.measures, params_.overlap);
             if (candidate.verdict == Verdict::accepted && !fits(pair.first, pair.second, candidate.motion))
@@ -172,8 +173,8 @@ private:
 
     bool sight_contradicts(const PairMeasures& measures) const {
         return measures.overlap >= least_checked_overlap &&
-               measures.front > (measures.overlap < params_.overlap ? contradicting_front_of_little_overlap
-                                                                    : contradicting_front);
+               measures.front >
+                   (measures.overlap < params_.overlap ? contradicting_front_of_little_overlap : contradicting_front);
     }
     /// Whether two views cannot both be where they are. `motion` leads from the frame of a to that of b.
     bool contradicts(u32 a, u32 b, const PairMeasures& measures, const RigidMotion& motion) const {
@@ -188,8 +189,7 @@ private:
         for (std::size_t i = 0; i < pairs_.size(); ++i)
             if (const Edge& pair = pairs_[i]; pair.result.is_accepted()) {
                 const Candidate& best = *pair.result.best();
-                all.push_back(
-                    {pair.first, pair.second, best.motion, best.measures.score(), pair.result.is_ambiguous});
+                all.push_back({pair.first, pair.second, best.motion, best.measures.score(), pair.result.is_ambiguous});
                 pair_of_edge.push_back(i);
             }
         const CheckedEdges checked = checked_by_triples(all, extents, triple_tolerance * resolution_);
@@ -227,8 +227,8 @@ private:
 
     bool is_usable(u32 view) const { return refusal_[view] == ViewRefusal::none; }
     std::size_t index_of(const GraphEdge& edge) const {
-        const auto found = std::ranges::find_if(
-            edges_, [&](const GraphEdge& e) { return e.from == edge.from && e.to == edge.to; });
+        const auto found =
+            std::ranges::find_if(edges_, [&](const GraphEdge& e) { return e.from == edge.from && e.to == edge.to; });
         return static_cast<std::size_t>(found - edges_.begin());
     }
 
@@ -282,10 +282,8 @@ private:
             for (u32 b = a + 1; b < views_.size(); ++b) {
                 if (!poses_[a] || !poses_[b]) continue;
                 const PairMeasures measures = measured(*reduced_[a], *reduced_[b], relative(a, b));
-                for (const u32 view : {a, b})
-                    details[view].overlap = std::max(details[view].overlap, measures.overlap);
-                if (contradicts(a, b, measures, relative(a, b)))
-                    ++contradictions[a], ++contradictions[b];
+                for (const u32 view : {a, b}) details[view].overlap = std::max(details[view].overlap, measures.overlap);
+                if (contradicts(a, b, measures, relative(a, b))) ++contradictions[a], ++contradictions[b];
             }
         std::vector<double> scores(views_.size(), 0);
         for (const GraphEdge& edge : usable) scores[edge.from] += edge.score, scores[edge.to] += edge.score;

@@ -23,8 +23,9 @@ struct RegisterViewsParams {
     std::optional<double> resolution;
     /// Number of hypotheses that are refined per pair, at least 1.
     u32 seed_tries = 20;
-    /// The poses of the views (`start`, or the identity) are tested as they are. If no lines of sight contradict them and
-    /// overlapping pairs connect all views, they are kept bit for bit; otherwise the views are registered without them.
+    /// The poses of the views (`start`, or the identity) are tested as they are. If no lines of sight contradict them
+    /// and overlapping pairs connect all views, they are kept bit for bit; otherwise the views are registered without
+    /// them.
     bool as_is = false;
 };
 
@@ -85,8 +86,8 @@ struct RegisterViewsResult {
     double confidence = 0;  ///< the smallest score in the tree
     /// Number of candidates that each test rejected, and of edges that contradicted others.
     std::size_t dropped_front = 0, dropped_missing = 0, dropped_slide = 0, dropped_misfit = 0, dropped_cycle = 0;
-    /// With `as_is`: whether the poses were kept; otherwise the first pair that contradicts them, or none if the views are
-    /// not connected.
+    /// With `as_is`: whether the poses were kept; otherwise the first pair that contradicts them, or none if the views
+    /// are not connected.
     bool kept_as_is = false;
     std::optional<std::pair<u32, u32>> contradicting;
 };
@@ -96,10 +97,11 @@ struct RegisterViewsResult {
 /// Pre:  finite `overlap`; equal units of all views.
 /// Post: poses map into the frame of the first placed view, whose pose is the identity. If no two views can be placed,
 ///       all are refused. One view alone gets the identity.
-///       Throws Error with the name of the view for: no view; a view without points, with fewer than 3 points, with NaN,
-///       with all points equal or on a line; two views with the same points; too many pairs without start poses.
+///       Throws Error with the name of the view for: no view; a view without points, with fewer than 3 points, with
+///       NaN, with all points equal or on a line; two views with the same points; too many pairs without start poses.
 /// Ties: views are processed in the order of their number of points, then of their coordinates; lower views win ties.
-/// Determinism: bytes do not depend on the number of threads. For another order of the views, relative poses differ only
+/// Determinism: bytes do not depend on the number of threads. For another order of the views, relative poses differ
+/// only
 ///       by the rounding of the last product.
 /// Cost: about 0.1 s per pair of views, and 10 us per point.
 RegisterViewsResult register_views(std::span<const ViewToRegister> views, const RegisterViewsParams& params,

@@ -30,7 +30,8 @@ void require_surface(std::span<const Vec3> points, std::string_view name) {
     const Vec3 centre = points[0] + sum / static_cast<double>(points.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (const Vec3& p : points) covariance += (p - centre) * (p - centre).transpose();
-    const Vec3 spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vec3 spread =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
     if (spread[1] >= line_share * spread[2] && spread[2] > 0) return;
     throw Error("all {} points of the view '{}' {}", points.size(), name, spread[2] > 0 ? "lie on a line" : "are equal")
         .hint("a view needs points on a surface; remove it from the list of views");

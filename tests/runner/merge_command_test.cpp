@@ -84,19 +84,20 @@ class MergeByTransform : public MergeCommand {
 protected:
     MergeByTransform() {
         folder_.write("top.xyz", "0 0 0\n");
-        folder_.write("motions.json",
-                      "{\"scanmill\": 1, \"frame\": \"part\", \"poses\": [{\"scan\": \"right\", \"rotation\": [0, 0, 0, "
-                      "1], \"translation\": [0, 0, 0]}, {\"scan\": \"top\", \"refused\": \"no-overlap\"}, {\"scan\": "
-                      "\"left\", \"rotation\": [0, 0, 0, 1], \"translation\": [10, 0, 0]}]}");
+        folder_.write(
+            "motions.json",
+            "{\"scanmill\": 1, \"frame\": \"part\", \"poses\": [{\"scan\": \"right\", \"rotation\": [0, 0, 0, "
+            "1], \"translation\": [0, 0, 0]}, {\"scan\": \"top\", \"refused\": \"no-overlap\"}, {\"scan\": "
+            "\"left\", \"rotation\": [0, 0, 0, 1], \"translation\": [10, 0, 0]}]}");
     }
     ProgramResult merge(const std::string& step) const {
         folder_.write("by-port.yaml",
                       "scanmill: 1\nname: by-port\ninputs:\n  views: {kind: points, list: true, frame: '{stem}'}\n"
                       "  motions: transform\nsteps:\n" +
                           step + "outputs: {'merged.ply': merge}\n");
-        return scanmill_program({"run", "by-port.yaml", "left.xyz", "top.xyz", "right.xyz", "--in",
-                                 "motions=motions.json", "-o", "out"},
-                                {.folder = folder_.path()});
+        return scanmill_program(
+            {"run", "by-port.yaml", "left.xyz", "top.xyz", "right.xyz", "--in", "motions=motions.json", "-o", "out"},
+            {.folder = folder_.path()});
     }
 };
 
@@ -121,8 +122,7 @@ TEST_F(MergeByTransform, WithoutIn_DoesNotTakeAnEarlierTransform) {
 }
 
 TEST_F(MergeByTransform, AndAFileOfPoses_AreRefused) {
-    const ProgramResult ran =
-        merge("  - merge: {poses: v.conf}\n    in: {points: views, transform: motions}\n");
+    const ProgramResult ran = merge("  - merge: {poses: v.conf}\n    in: {points: views, transform: motions}\n");
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, AllOf(HasSubstr("v.conf"), HasSubstr("`transform`"), HasSubstr("hint")));
 }

@@ -65,6 +65,7 @@ const std::vector<Step> steps{
     {"motion", "align", "", "source: corners, target: machine-corners, part: grown"},
     {"moved", "apply-transform", "", "transform: motion, value: grown"},
     {"moved-lines", "apply-transform", "", "transform: motion, value: grown.features"},
+    {"registered", "register", "as-is: true", "points: [scan, other-scan]"},
     {"refined", "icp", "", "source: scan, target: merged"},
     {"refined-on-mesh", "icp", "trim: 0 %, max-distance: 3 spacing", "source: other-scan, target: clustered"},
     {"touches", "probe-planner", "radius: 0.05 u, scanner-error: 0.02 u, spacing: 0.2 u, directions: 2",

@@ -37,7 +37,7 @@ constexpr auto fields(const RigidTransform*) {
 
 /// A frame that got no motion.
 struct RefusedFrame {
-    std::string from;    ///< the frame's name; not empty
+    std::string from;  ///< the frame's name; not empty
     std::string reason;  ///< not empty
 };
 constexpr auto fields(const RefusedFrame*) {
@@ -48,11 +48,11 @@ constexpr auto fields(const RefusedFrame*) {
 /// no unit. The views need not have a motion in the list that the edge belongs to.
 struct PoseEdge {
     RigidTransform pose;  ///< from the frame of the first view to the frame of the second
-    double overlap = 0;   ///< share of points with a partner in the other view; the larger share of both views
-    double front = 0;     ///< share of points in front of the surface that the other view's scanner saw
-    double missing = 0;   ///< share of points that the other view's scanner faces but did not measure
-    double slide = 0;     ///< least eigenvalue of the point-to-plane fit; near 0 if the views slide on each other
-    double score = 0;     ///< larger is better
+    double overlap = 0;  ///< share of points with a partner in the other view; the larger share of both views
+    double front = 0;  ///< share of points in front of the surface that the other view's scanner saw
+    double missing = 0;  ///< share of points that the other view's scanner faces but did not measure
+    double slide = 0;  ///< least eigenvalue of the point-to-plane fit; near 0 if the views slide on each other
+    double score = 0;  ///< larger is better
 };
 constexpr auto fields(const PoseEdge*) {
     using E = PoseEdge;

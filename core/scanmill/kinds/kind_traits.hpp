@@ -71,8 +71,8 @@ void visit_array(FieldVisitor& visitor, const char* name, const auto& field, Buf
 
 /// Whether visit_rows() visits the members of this type as one small field: texts, structs and optional numbers.
 template <class Member>
-concept SmallInRows = std::same_as<Member, std::string> || Described<Member> ||
-                      requires(const Member& member) { member.has_value(); };
+concept SmallInRows =
+    std::same_as<Member, std::string> || Described<Member> || requires(const Member& member) { member.has_value(); };
 
 /// Visits a list of structs field by field. The members of all rows form one array, or one small field; lists of
 /// positions are concatenated.

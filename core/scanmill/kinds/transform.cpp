@@ -277,11 +277,11 @@ struct KindTraits<Transforms> : NotGeometric<Transforms>, NoProperties<Transform
         }
         transforms.edges = edges_of(document);
         if (transforms.motions.empty())
-            throw Error("contains no motion: {}", transforms.refused.size() == 1
-                                                      ? fmt::format("'{}' is refused: {}", transforms.refused[0].from,
-                                                                    transforms.refused[0].reason)
-                                                      : fmt::format("all {} scans are refused",
-                                                                    transforms.refused.size()));
+            throw Error(
+                "contains no motion: {}",
+                transforms.refused.size() == 1
+                    ? fmt::format("'{}' is refused: {}", transforms.refused[0].from, transforms.refused[0].reason)
+                    : fmt::format("all {} scans are refused", transforms.refused.size()));
         return transforms;
     }
     static Json schema() {

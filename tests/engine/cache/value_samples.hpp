@@ -132,7 +132,7 @@ inline Metrics metrics() {
 inline Picture picture() { return {3, 2, Array<Colour>(6, Colour{0, 255, 7}), "A \xff caption\n\"of\" two lines"}; }
 
 inline std::vector<Value> one_of_each_kind() {
-    return {value(cloud()),  value(mesh()),      value(tets()),    value(features()), value(patches()),
+    return {value(cloud()),  value(mesh()),       value(tets()),    value(features()), value(patches()),
             value(probes()), value(transforms()), value(metrics()), value(picture())};
 }
 

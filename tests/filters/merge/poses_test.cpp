@@ -173,9 +173,7 @@ TEST(Place, ATransformWithoutAMotionOfAnInput_IsRefused) {
     Context context;
     RigidTransform motion;
     motion.from = "a";
-    EXPECT_THAT(sentence_of([&] {
-                    merging::place(clouds, params, merging::scan_poses_of(motion), context);
-                }),
+    EXPECT_THAT(sentence_of([&] { merging::place(clouds, params, merging::scan_poses_of(motion), context); }),
                 HasSubstr("no pose for input 1, whose frame is called 'b'"));
 }
 

@@ -5,12 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "register/register_views.hpp"
 #include "scanmill/base/random.hpp"
+#include "support/mesh_operations.hpp"
+#include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 
@@ -18,7 +22,7 @@ struct View {
     std::string name;
     std::vector<Vec3> points;
     Vec3 to_scanner = Vec3::UnitZ();
-    RigidMotion truth;  ///< from the view's frame to the world
+    RigidMotion truth{};  ///< from the view's frame to the world
     std::optional<RigidMotion> start{};
 };
 
@@ -81,15 +85,49 @@ inline View height_view(std::string name, double from_x, double to_x, double fro
     View view;
     view.name = std::move(name);
     for (double x = from_x; x < to_x; ++x)
-        for (double y = from_y; y < to_y; ++y)
-            view.points.emplace_back(x, y, height(x, y) + noise * random.normal());
+        for (double y = from_y; y < to_y; ++y) view.points.emplace_back(x, y, height(x, y) + noise * random.normal());
     return view;
 }
 
-/// A landscape without symmetry.
-inline double hills(double x, double y) {
-    return 9 * std::sin(x / 13) * std::cos(y / 17) + 5 * std::sin((x + 2 * y) / 23) + 6 * std::cos((x * 0.7 - y) / 9) +
-           0.0005 * x * x;
+/// A closed lump without symmetry, about 100 long. Another `kind` is another object.
+inline TriangleMesh lump(double kind = 0) {
+    constexpr u32 around = 120, along = 60;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (u32 j = 0; j <= along; ++j)
+        for (u32 i = 0; i < around; ++i) {
+            const double turn = 2 * std::numbers::pi * i / around, tilt = std::numbers::pi * (j + 0.5) / (along + 1);
+            const Vec3 d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
+            const double radius = 40 + 9 * std::sin(3 * d.x() + 2 * d.y() + kind) +
+                                  7 * std::cos(5 * d.z() - 2 * d.x()) + 5 * std::sin(6 * d.y() + d.z() + 1 + 2 * kind) +
+                                  3 * std::sin(9 * d.x() * d.y() - kind);
+            positions.push_back(Vec3(1.2, 1, 0.8).cwiseProduct(radius * d));
+            if (j == 0) continue;
+            const u32 a = (j - 1) * around + i, b = (j - 1) * around + (i + 1) % around;
+            triangles.push_back({a, a + around, b});
+            triangles.push_back({b, a + around, b + around});
+        }
+    return soup(std::move(positions), std::move(triangles));
+}
+
+/// Views of a mesh from `count` directions, rays 1 apart, noise of half a ray distance.
+inline std::vector<View> views_of(const TriangleMesh& mesh, u32 count) {
+    VirtualScanParams params;
+    params.views = {static_cast<double>(count)};
+    params.resolution = 1.0;
+    params.noise = 0.5;
+    params.max_angle = Angle::degrees(75);
+    Context context;
+    const VirtualScanResult scan = virtual_scan(&mesh, params, context);
+    std::vector<View> views(count);
+    const Column* number = scan.points.columns.find("view");
+    for (std::size_t row = 0; row < scan.points.size(); ++row)
+        views[static_cast<std::size_t>(number->number(row, 0))].points.push_back(scan.points.positions[row]);
+    for (u32 i = 0; i < count; ++i) {
+        views[i].name = "view " + std::to_string(i + 1);
+        views[i].to_scanner = scan.directions[i];
+    }
+    return views;
 }
 
 }  // namespace scanmill::test

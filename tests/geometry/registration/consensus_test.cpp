@@ -93,9 +93,8 @@ TEST(ConsistentMotions, AFewRightCorrespondencesAmongMany_DecideTheFirst) {
         const u32 row = static_cast<u32>(random.index(points.size()));
         correspondences.push_back({row, i % 12 == 0 ? row : static_cast<u32>(random.index(points.size())), 0});
     }
-    const std::vector<Hypothesis> found =
-        consistent_motions({surface.points, surface.normals}, {points, normals}, correspondences,
-                           {1, Vec3(15, 15, 0), 12, 5});
+    const std::vector<Hypothesis> found = consistent_motions({surface.points, surface.normals}, {points, normals},
+                                                             correspondences, {1, Vec3(15, 15, 0), 12, 5});
     ASSERT_FALSE(found.empty());
     EXPECT_LE(found.size(), 5u);
     EXPECT_LT(displacement(found[0].motion, motion, Vec3(15, 15, 0), 12), 1);  // the tolerance

@@ -28,7 +28,8 @@ TEST(Triples, AnEdgeThatContradictsTwoOthers_IsDropped) {
 }
 
 TEST(Triples, ADoubtfulEdge_NeedsAConsistentTriple) {
-    std::vector<GraphEdge> edges{{0, 1, shift(1), 1, true}, {0, 2, shift(2), 1}, {1, 2, shift(1), 1}, {2, 3, shift(1), 1, true}};
+    std::vector<GraphEdge> edges{
+        {0, 1, shift(1), 1, true}, {0, 2, shift(2), 1}, {1, 2, shift(1), 1}, {2, 3, shift(1), 1, true}};
     const CheckedEdges checked = checked_by_triples(edges, four_views, 0.5);
     EXPECT_EQ(checked.unconfirmed, 1u);
     EXPECT_EQ(checked.is_kept, std::vector<bool>({true, true, true, false}));

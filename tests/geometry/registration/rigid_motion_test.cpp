@@ -77,9 +77,7 @@ TEST(PlaneEquations, OfAPlane_LeaveThreeDirectionsFree) {
     EXPECT_LT((motion.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
 }
 
-TEST(PlaneEquations, WithoutPairs_DoNotMove) {
-    EXPECT_EQ(plane_equations({}).motion(0).translation, Vec3::Zero());
-}
+TEST(PlaneEquations, WithoutPairs_DoNotMove) { EXPECT_EQ(plane_equations({}).motion(0).translation, Vec3::Zero()); }
 
 }  // namespace
 }  // namespace scanmill

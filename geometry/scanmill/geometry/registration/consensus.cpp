@@ -85,8 +85,7 @@ public:
         for (std::size_t word = from / 64; word < words_; ++word) {
             u64 rest = bits_[i * words_ + word];
             if (word == from / 64) rest &= ~u64(0) << (from % 64);
-            for (; rest; rest &= rest - 1)
-                action(word * 64 + static_cast<std::size_t>(std::countr_zero(rest)));
+            for (; rest; rest &= rest - 1) action(word * 64 + static_cast<std::size_t>(std::countr_zero(rest)));
         }
     }
 
@@ -146,8 +145,7 @@ Compatibility compatibility_of(const Ends& a, const Ends& b, double tolerance) {
                 // |√x - √y| < t without square roots: x + y - t² < 2 √(x y).
                 const double x = in_a.squared[k], y = in_b.squared[k], rest = x + y - tolerance_squared;
                 const double positive = rest > 0 ? rest : 0, distances = positive * positive - 4 * x * y;
-                const double normals =
-                    std::abs(in_a.product[k] - in_b.product[k]) - largest_product_difference;
+                const double normals = std::abs(in_a.product[k] - in_b.product[k]) - largest_product_difference;
                 const double larger = distances > normals ? distances : normals, too_short = least_squared - x;
                 excess[k] = larger > too_short ? larger : too_short;
             }

@@ -14,7 +14,8 @@ namespace scanmill {
 
 struct ConsensusParams {
     /// Two correspondences are compatible if the distances of their points differ by less than this. A correspondence
-    /// votes for a motion that brings its points closer than 1.5 times this, and motions differ by more than twice this.
+    /// votes for a motion that brings its points closer than 1.5 times this, and motions differ by more than twice
+    /// this.
     double tolerance = 0;
     /// The centre and the radius of the first set, for displacement().
     Vec3 centre = Vec3::Zero();

@@ -115,7 +115,8 @@ Array<Correspondence> similar_points(std::span<const Descriptor> first, std::spa
         for (std::size_t k = 0; k < descriptor_size; ++k)
             transposed[j / lanes * descriptor_size + k][static_cast<Eigen::Index>(j % lanes)] = second[j][k];
 
-    std::vector<MostSimilar> of_first(first.size(), MostSimilar(nearest)), of_second(second.size(), MostSimilar(nearest));
+    std::vector<MostSimilar> of_first(first.size(), MostSimilar(nearest)),
+        of_second(second.size(), MostSimilar(nearest));
     for (std::size_t block = 0; block < blocks; ++block) {
         const std::size_t size = std::min(lanes, second.size() - block * lanes);
         const Lanes* const values = &transposed[block * descriptor_size];

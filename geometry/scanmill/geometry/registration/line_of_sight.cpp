@@ -34,9 +34,8 @@ SightLines::Place SightLines::place_of(const Vec3& position) const {
 
 bool SightLines::is_empty_at(const Vec3& position) const {
     const ProjectedGrid::Ray at = grid_.ray_of(position);
-    return !grid_.any_within(at, reach_, [&](const ProjectedGrid::Ray& other) {
-        return squared_across(at, other) <= reach_ * reach_;
-    });
+    return !grid_.any_within(
+        at, reach_, [&](const ProjectedGrid::Ray& other) { return squared_across(at, other) <= reach_ * reach_; });
 }
 
 }  // namespace scanmill

@@ -23,8 +23,8 @@ public:
 
     const Vec3& to_scanner() const { return grid_.direction(); }
 
-    /// The view has a ray at `position` if one of its points lies within reach / 2 across the line of sight. The position
-    /// is in front if it is more than `reach` nearer to the scanner than the points within 3/4 reach across.
+    /// The view has a ray at `position` if one of its points lies within reach / 2 across the line of sight. The
+    /// position is in front if it is more than `reach` nearer to the scanner than the points within 3/4 reach across.
     Place place_of(const Vec3& position) const;
     /// Whether no point of the view lies within `reach` of the line of sight through `position`.
     bool is_empty_at(const Vec3& position) const;

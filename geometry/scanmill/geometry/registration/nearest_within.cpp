@@ -65,7 +65,8 @@ NearestWithin::NearestWithin(std::span<const Vec3> points, double reach)
         });
     begin_.assign(limit.size() + 1, 0);
     for (const Vec3& point : points_)
-        for_each_cell(point, [&](std::size_t cell, double nearest, double) { begin_[cell + 1] += nearest <= limit[cell]; });
+        for_each_cell(point,
+                      [&](std::size_t cell, double nearest, double) { begin_[cell + 1] += nearest <= limit[cell]; });
     std::inclusive_scan(begin_.begin(), begin_.end(), begin_.begin());
     lists_.resize(begin_.back());
     Array<u32> next(begin_.begin(), begin_.end() - 1);

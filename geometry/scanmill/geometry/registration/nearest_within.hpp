@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Finds the nearest of some thousand points within a fixed reach, many times. Each cell of a grid lists all points that
-/// can be the nearest to a position in the cell; a query looks at one list.
+/// Finds the nearest of some thousand points within a fixed reach, many times. Each cell of a grid lists all points
+/// that can be the nearest to a position in the cell; a query looks at one list.
 
 #include <span>
 
@@ -18,8 +18,8 @@ public:
     /// apart.
     NearestWithin(std::span<const Vec3> points, double reach);
 
-    /// The index of the point nearest to `position`, or `none` if none is closer than `distance`. Ties: the lower index.
-    /// Pre: distance <= reach. Cost: about 20 ns. Safe from several threads.
+    /// The index of the point nearest to `position`, or `none` if none is closer than `distance`. Ties: the lower
+    /// index. Pre: distance <= reach. Cost: about 20 ns. Safe from several threads.
     u32 nearest(const Vec3& position, double distance) const;
 
 private:

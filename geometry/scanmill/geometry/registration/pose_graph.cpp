@@ -49,8 +49,7 @@ std::vector<Triple> triples_of(std::span<const GraphEdge> edges, std::span<const
 
 }  // namespace
 
-CheckedEdges checked_by_triples(std::span<const GraphEdge> edges, std::span<const ViewExtent> views,
-                                double tolerance) {
+CheckedEdges checked_by_triples(std::span<const GraphEdge> edges, std::span<const ViewExtent> views, double tolerance) {
     const std::vector<Triple> triples = triples_of(edges, views, tolerance);
     CheckedEdges checked{std::vector<bool>(edges.size(), true), triples.size(), 0, 0, 0};
     for (const Triple& triple : triples) checked.inconsistent += !triple.is_consistent;

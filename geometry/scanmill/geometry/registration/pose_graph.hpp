@@ -34,9 +34,9 @@ struct CheckedEdges {
     std::size_t unconfirmed = 0;  ///< doubtful edges without a consistent triple
 };
 
-/// Composes the motions of each three edges that form a triangle. The triple is consistent if the composition differs by
-/// less than `tolerance` from the third edge. While an edge has more inconsistent than consistent triples, the one with
-/// the largest number of inconsistent triples is dropped (ties: the lower index). Then doubtful edges without a
+/// Composes the motions of each three edges that form a triangle. The triple is consistent if the composition differs
+/// by less than `tolerance` from the third edge. While an edge has more inconsistent than consistent triples, the one
+/// with the largest number of inconsistent triples is dropped (ties: the lower index). Then doubtful edges without a
 /// consistent triple are dropped.
 /// Pre: at most one edge per pair. Cost: O(edges × views).
 CheckedEdges checked_by_triples(std::span<const GraphEdge> edges, std::span<const ViewExtent> views, double tolerance);

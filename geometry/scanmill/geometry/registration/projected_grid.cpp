@@ -33,7 +33,8 @@ ProjectedGrid::ProjectedGrid(std::span<const Vec3> points, const Vec3& direction
     }
     if (points.empty()) low_x_ = low_y_ = high_x = high_y = 0;
     const auto cells = [&](double low, double high) { return std::floor((high - low) / edge_) + 1; };
-    while (cells(low_x_, high_x) * cells(low_y_, high_y) > most_cells_per_point * static_cast<double>(points.size() + 64))
+    while (cells(low_x_, high_x) * cells(low_y_, high_y) >
+           most_cells_per_point * static_cast<double>(points.size() + 64))
         edge_ *= 2;
     columns_ = cells(low_x_, high_x), rows_ = cells(low_y_, high_y);
     const auto cell_of = [&](const Ray& ray) {

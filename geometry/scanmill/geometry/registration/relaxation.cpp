@@ -149,8 +149,8 @@ public:
     }
 
 private:
-    /// Moving the view with the points changes a residual by J x, moving the view with the planes by -J x. Returns a bound
-    /// of the largest motion of a point.
+    /// Moving the view with the points changes a residual by J x, moving the view with the planes by -J x. Returns a
+    /// bound of the largest motion of a point.
     double move() {
         const Eigen::Index size = 6 * static_cast<Eigen::Index>(poses_.size());
         Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
@@ -220,6 +220,12 @@ ViewSurface::ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, s
     // Two spacings: a few points per cell.
     grid_.emplace(points_, to_scanner, 2 * std::max(spacing_, least_edge(points_)));
 }
+
+ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> normals, double spacing)
+    : points_(points.begin(), points.end()),
+      normals_(normals.begin(), normals.end()),
+      spacing_(spacing),
+      grid_(std::in_place, points, Vec3::UnitZ(), 2 * std::max(spacing, least_edge(points))) {}
 
 Agreement agreement(const ViewSurface& from, const ViewSurface& to, const RigidMotion& motion, double tolerance,
                     double close) {

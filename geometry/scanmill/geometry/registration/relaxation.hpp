@@ -17,10 +17,13 @@ namespace scanmill {
 /// The points of a view with their normals, for searches from other views.
 class ViewSurface {
 public:
-    /// Keeps each position once. Normals are those of the planes through `neighbours` other points, turned to the scanner.
-    /// Chooses at most `most_samples` points, every k-th row, that are searched for in other views.
-    /// Pre: finite points; `to_scanner` is a unit vector. Cost: about 3 us per point for 24 neighbours.
+    /// Keeps each position once. Normals are those of the planes through `neighbours` other points, turned to the
+    /// scanner. Chooses at most `most_samples` points, every k-th row, that are searched for in other views. Pre:
+/// finite points; `to_scanner` is a unit vector. Cost: about 3 us per point for 24 neighbours.
     ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, std::size_t neighbours, std::size_t most_samples);
+
+    /// A surface that stays, with given normals, one unit vector per point, and without samples. Pre: distinct points.
+    ViewSurface(std::span<const Vec3> points, std::span<const Vec3> normals, double spacing);
 
     std::span<const Vec3> points() const { return points_; }
     std::span<const Vec3> normals() const { return normals_; }

@@ -19,7 +19,9 @@ struct RigidMotion {
     Vec3 apply(const Vec3& p) const { return turned(p) + translation; }
     /// The image of a direction. Written out, because Eigen's product is a function call.
     Vec3 turned(const Vec3& v) const {
-        const auto row = [&](int i) { return rotation(i, 0) * v.x() + rotation(i, 1) * v.y() + rotation(i, 2) * v.z(); };
+        const auto row = [&](int i) {
+            return rotation(i, 0) * v.x() + rotation(i, 1) * v.y() + rotation(i, 2) * v.z();
+        };
         return {row(0), row(1), row(2)};
     }
     RigidMotion inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }

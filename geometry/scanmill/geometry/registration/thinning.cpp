@@ -7,8 +7,8 @@ namespace scanmill {
 
 namespace {
 
-/// Distances that differ by less than this share are equal: scans on a grid have many equal distances, and rounding must
-/// not decide between them.
+/// Distances that differ by less than this share are equal: scans on a grid have many equal distances, and rounding
+/// must not decide between them.
 constexpr double equal = 1e-9;
 
 /// The kept points by cells whose edge is the distance.

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "register/registered_clouds.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = RegisterParams;
+    return Declare<P>("register", 1)
+        .summary("Finds one motion per view that brings views without poses into one frame.")
+        .source(
+            "Rusu, Blodow, Beetz 2009; Chen, Sun, Yang, Tao 2022; Chen, Medioni 1992; Huber, Hebert 2003 for the views "
+            "that contradict each other")
+        .ties("Of equal scores, the pair of the views with fewer points counts, then the one with lower coordinates.")
+        .not_finite("Refused; the message gives the view, their number and the first one.")
+        .in<PointCloud>("points",
+                        "The views, each in a frame of its own. The side of the scanner is that of the column "
+                        "`approach`, else of `normal`, else +z with a warning.",
+                        list)
+        .out<Transforms>(
+            "transform",
+            "One motion per placed view, into the frame of the first placed view; it never scales. With the "
+            "refused views and the accepted pairs.")
+        .param("overlap", &P::overlap, "Smallest share of the points that two views must have in common.", above(0),
+               at_most(1))
+        .param(
+            "resolution", &P::resolution,
+            "Edge of the voxels to which views are reduced; `auto` is 4 spacings, or a tenth of the size of a view if "
+            "that is larger. Poses are refined with all points.",
+            above(0), word("auto"))
+        .param(
+            "start", &P::start,
+            "A Stanford .conf or a JSON file with poses to begin with; they are refined and tested, and a wrong one is "
+            "refused.",
+            word("none"))
+        .param("as-is", &P::as_is,
+               "Whether views that are already in one frame are only tested; if nothing contradicts their poses, they "
+               "keep "
+               "them.")
+        .param("seed-tries", &P::seed_tries, "Number of poses of a pair that are refined and tested.", at_least(1))
+        .choice("on-refusal", &P::on_refusal,
+                {{"fail", P::OnRefusal::fail, "The step fails, and the message lists every refused view."},
+                 {"leave-out", P::OnRefusal::leave_out,
+                  "The other views go on without the refused ones, and the result is doubtful."}},
+                "What happens if a view cannot be placed surely.")
+        .metric("views", Unit::count, "Views in the input.")
+        .metric("placed", Unit::count, "Views with a motion.", headline, larger_is_better)
+        .metric("refused", Unit::count, "Views without a motion.", headline, smaller_is_better)
+        .metric("pairs", Unit::count, "Pairs of views that were accepted.")
+        .metric("overlap", Unit::ratio, "Largest share of a view's points that another view has, too.", numbered,
+                larger_is_better)
+        .metric("residual", Unit::length, "Root mean square distance of a view's points from the planes of the others.",
+                numbered, smaller_is_better)
+        .metric(
+            "confidence", Unit::number,
+            "Largest score of a view's pairs: the overlap, less for points in front of other views and for points that "
+            "other views should have; 0 to 1.",
+            numbered, larger_is_better)
+        .metric("rms", Unit::length, "Root mean square distance of the points from the planes of other views.",
+                headline, smaller_is_better)
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("transform", registered_clouds(inputs.list<PointCloud>("points"), params, context));
+        });
+}

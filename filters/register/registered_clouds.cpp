@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "register/registered_clouds.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+
+#include "merge/scan_poses.hpp"
+#include "register/register_views.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/filter/inputs.hpp"
+#include "scanmill/kinds/value.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Views = std::span<const std::shared_ptr<const PointCloud>>;
+
+constexpr std::size_t most_named = 5;  // views in a warning
+
+/// The names in messages: those of the frames, else by number.
+std::vector<std::string> names_of(Views views) {
+    std::vector<std::string> names;
+    std::map<std::string, std::size_t> first;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::string& name = views[i]->frame.name;
+        names.push_back(name.empty() ? fmt::format("view {}", i + 1) : name);
+        if (const auto [earlier, is_new] = first.emplace(names.back(), i); !is_new)
+            throw Error("views {} and {} are both called '{}'", earlier->second + 1, i + 1, name)
+                .hint("name frames after their files, `frame: \"{stem}\"`, and rename files of one name");
+    }
+    return names;
+}
+
+void require_one_unit(Views views, std::span<const std::string> names) {
+    for (std::size_t i = 1; i < views.size(); ++i)
+        if (views[i]->frame.unit != views[0]->frame.unit)
+            throw Error("'{}' is in {} and '{}' in {}", names[0], symbol(views[0]->frame.unit), names[i],
+                        symbol(views[i]->frame.unit))
+                .hint("declare the units at the workflow's input, or convert the files first");
+}
+
+/// The mean of a column of directions; 0 without such a column.
+Vec3 mean_direction(const PointCloud& view, std::string_view name) {
+    const Column* column = view.columns.find(name);
+    Vec3 sum = Vec3::Zero();
+    if (!column || column->components() != 3) return sum;
+    for (std::size_t row = 0; row < column->rows(); ++row) {
+        const Vec3 direction(column->number(row, 0), column->number(row, 1), column->number(row, 2));
+        const double length = direction.norm();
+        if (length > 0 && std::isfinite(length)) sum += direction / length;
+    }
+    return sum;
+}
+
+std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::string> names, Context& context) {
+    std::vector<ViewToRegister> result;
+    std::vector<std::string> assumed;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        ViewToRegister view{names[i], views[i]->positions.span(), Vec3::UnitZ(), {}};
+        Vec3 direction = mean_direction(*views[i], "approach");
+        if (direction.isZero(0)) direction = mean_direction(*views[i], "normal");
+        if (direction.isZero(0))
+            assumed.push_back(names[i]);
+        else
+            view.to_scanner = direction;
+        result.push_back(view);
+    }
+    if (!assumed.empty())
+        context.warn(
+            fmt::format("{} without a column `approach` or `normal`: the scanner is assumed on the side of +z ({})",
+                        count_text(assumed.size(), "view is", "views are"),
+                        enumerated(std::span<const std::string>(assumed).first(std::min(assumed.size(), most_named)))));
+    return result;
+}
+
+/// A motion of world coordinates as one of positions relative to the origins of the frames.
+RigidMotion local(const RigidTransform& pose, const Vec3& origin, const Vec3& origin_after, LengthUnit unit) {
+    return {pose.rotation, pose.rotation * origin + translation_in(unit, pose) - origin_after};
+}
+
+RigidTransform world(const RigidMotion& motion, const Vec3& origin, const Vec3& origin_after) {
+    RigidTransform pose;
+    pose.rotation = motion.rotation;
+    pose.translation = origin_after + motion.translation - motion.rotation * origin;
+    return pose;
+}
+
+std::string reason_of(const RegisteredView& view, std::span<const std::string> names) {
+    std::string text(name_of(view.refusal));
+    if (view.best_with < names.size())
+        text += fmt::format(": best with '{}', overlap {:.0f} %, in front {:.1f} %, missing {:.1f} %, slide {:.4f}",
+                            names[view.best_with], 100 * view.best.overlap, 100 * view.best.front,
+                            100 * view.best.missing, view.best.slide);
+    if (view.scale) text += fmt::format("; its size is {:.3g} times that of the others: {}?", *view.scale, view.units);
+    return text;
+}
+
+void refuse(const RegisterViewsResult& found, std::span<const std::string> names, const RegisterParams& params,
+            Context& context) {
+    std::vector<std::string> reasons;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (!found.views[i].pose)
+            reasons.push_back(fmt::format("'{}' ({})", names[i], reason_of(found.views[i], names)));
+    if (reasons.empty()) return;
+    const std::string sentence = fmt::format("{} of {} cannot be placed surely: {}", reasons.size(),
+                                             count_text(names.size(), "view", "views"), fmt::join(reasons, ", "));
+    if (params.on_refusal == RegisterParams::OnRefusal::fail || found.placed < 2)
+        throw Error("{}", sentence)
+            .hint(
+                "add views that overlap with them, lower `overlap`, give poses with `start`, or choose 'on-refusal: "
+                "leave-out'");
+    context.doubt(sentence);
+}
+
+void report(const RegisterViewsResult& found, Context& context) {
+    const auto count = [&](std::string_view name, std::size_t number) {
+        context.metric(name, static_cast<double>(number));
+    };
+    count("views", found.views.size());
+    count("placed", found.placed);
+    count("refused", found.views.size() - found.placed);
+    count("pairs", found.pairs.size());
+    for (std::size_t i = 0; i < found.views.size(); ++i) {
+        const RegisteredView& view = found.views[i];
+        const auto name = [&](std::string_view metric) {
+            return i == 0 ? std::string(metric) : fmt::format("{}@{}", metric, i + 1);
+        };
+        if (!view.pose) continue;
+        context.metric(name("overlap"), view.overlap, Unit::ratio);
+        context.metric(name("residual"), view.residual, Unit::length);
+        context.metric(name("confidence"), view.confidence, Unit::number);
+    }
+    context.metric("rms", found.rms, Unit::length);
+}
+
+}  // namespace
+
+Transforms registered_clouds(Views views, const RegisterParams& params, Context& context) {
+    if (views.empty()) throw Error("needs views; there are none").hint("wire the scans: 'in: {points: views}'");
+    const std::vector<std::string> names = names_of(views);
+    require_one_unit(views, names);
+    const LengthUnit unit = views[0]->frame.unit;
+    const Vec3& origin = views[0]->frame.origin;
+    std::vector<ViewToRegister> inputs = views_to_register(views, names, context);
+    if (params.start) {
+        std::vector<Frame> frames;
+        for (const auto& view : views) frames.push_back(view->frame);
+        const auto warn = [&](std::string sentence) { context.warn(std::move(sentence)); };
+        const std::vector<std::optional<RigidTransform>> poses =
+            merging::poses_of(frames, read_poses(*params.start, warn), context);
+        for (std::size_t i = 0; i < views.size(); ++i)
+            if (poses[i]) inputs[i].start = local(*poses[i], views[i]->frame.origin, origin, unit);
+    } else if (params.as_is) {
+        for (std::size_t i = 0; i < views.size(); ++i)
+            inputs[i].start = RigidMotion{Eigen::Matrix3d::Identity(), views[i]->frame.origin - origin};
+    }
+    RegisterViewsParams options;
+    options.overlap = params.overlap.value();
+    if (params.resolution) options.resolution = params.resolution->value();
+    options.seed_tries = params.seed_tries;
+    options.as_is = params.as_is;
+    const RegisterViewsResult found = register_views(inputs, options, context);
+    if (params.as_is && !found.kept_as_is)
+        context.warn(found.contradicting
+                         ? fmt::format("'{}' and '{}' contradict each other as they are; the views are registered anew",
+                                       names[found.contradicting->first], names[found.contradicting->second])
+                         : "overlapping pairs do not connect all views as they are; the views are registered anew");
+    refuse(found, names, params, context);
+
+    const auto first =
+        std::ranges::find_if(found.views, [](const RegisteredView& view) { return view.pose.has_value(); });
+    const Frame& target = views[static_cast<std::size_t>(first - found.views.begin())]->frame;
+    Transforms result;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const RegisteredView& view = found.views[i];
+        const Frame& frame = views[i]->frame;
+        if (!view.pose) {
+            result.refused.push_back({names[i], reason_of(view, names)});
+            continue;
+        }
+        RigidTransform pose =
+            found.kept_as_is && !params.start ? RigidTransform() : world(*view.pose, frame.origin, target.origin);
+        pose.unit = unit;
+        pose.from = frame.name;
+        pose.to = target.name;
+        pose.rms = view.residual;
+        result.motions.push_back(pose);
+    }
+    for (const RegisteredPair& pair : found.pairs) {
+        const Frame &from = views[pair.from]->frame, &to = views[pair.to]->frame;
+        PoseEdge edge{world(pair.motion, from.origin, to.origin),
+                      pair.measures.overlap,
+                      pair.measures.front,
+                      pair.measures.missing,
+                      pair.measures.slide,
+                      pair.measures.score()};
+        edge.pose.unit = unit;
+        edge.pose.from = names[pair.from];
+        edge.pose.to = names[pair.to];
+        result.edges.push_back(edge);
+    }
+    report(found, context);
+    return result;
+}
+
+}  // namespace scanmill
