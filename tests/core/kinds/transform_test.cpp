@@ -84,7 +84,7 @@ std::string sentence_with(const std::function<void(Json&)>& change) {
 }
 
 TEST(TransformsJson, OneMotion_IsADocumentOfOnePose) {
-    EXPECT_EQ(json_of(motion("a", Vec3(1, 2, 3))).dump(),
+    EXPECT_EQ(json_of(Transforms(motion("a", Vec3(1, 2, 3)))).dump(),
               R"({"scanmill":1,"unit":"mm","frame":"part","poses":[{"scan":"a","matrix":)"
               R"([[0.6,-0.8,0.0,1.0],[0.8,0.6,0.0,2.0],[0.0,0.0,1.0,3.0],[0,0,0,1]]}]})");
 }
