@@ -68,8 +68,8 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("scale", Unit::number, "Size of the target relative to the source: 1 if the units agree.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            const Aligned aligned = align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
-                                          part_at(inputs), params, context);
-            return Outputs().set("transform", Transforms(aligned.transform));
+            const AlignResult found = align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
+                                            part_at(inputs), params, context);
+            return Outputs().set("transform", Transforms(found.transform));
         });
 }

@@ -19,8 +19,8 @@ namespace scanmill::merging {
 PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, double value);
 
 /// The columns of the clouds, end to end, in the order in which their names first appear, `source` last. Warns about
-/// every column that is left out or changed. `numbers`: the number of each cloud, for `source` and messages; ascending.
-/// Pre: at least one cloud; `poses` is empty or as long as `clouds`.
+/// every column that is left out or changed. `numbers`: the number of each cloud, for `source` and messages, ascending;
+/// empty: 0, 1, 2, … Pre: at least one cloud; `poses` is empty or as long as `clouds`.
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
                            std::span<const RigidTransform> poses, std::span<const u32> numbers, Context& context);
 

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "merge/merge_steps.hpp"
@@ -214,6 +215,9 @@ PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, do
 
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
                            std::span<const RigidTransform> poses, std::span<const u32> numbers, Context& context) {
+    std::vector<u32> all(clouds.size());
+    std::iota(all.begin(), all.end(), 0u);
+    if (numbers.empty()) numbers = all;
     std::vector<ColumnTable> tables(clouds.size());
     std::vector<std::size_t> rows;
     for (const auto& cloud : clouds) rows.push_back(cloud->size());

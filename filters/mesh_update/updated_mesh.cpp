@@ -102,7 +102,7 @@ TriangleMesh updated_mesh(const Model& model, std::span<const std::shared_ptr<co
     mesh.triangles = rebuilt.triangles;
     std::vector<std::shared_ptr<const PointCloud>> all{std::make_shared<const PointCloud>(vertices_of(model.mesh))};
     all.insert(all.end(), clouds.begin(), clouds.end());
-    mesh.vertex_columns = merging::merged_columns(all, {}, context).gather(rebuilt.rows);
+    mesh.vertex_columns = merging::merged_columns(all, {}, {}, context).gather(rebuilt.rows);
     ColumnTable faces;
     for (const Column& column : model.mesh.face_columns)
         if (column.name() != "updated") faces.add(column);
@@ -123,7 +123,7 @@ TriangleMesh kept_mesh(const TriangleMesh& given, const Model& model, const Grou
     const std::size_t vertices = given.positions.size();
     // Resampling appends vertices.
     const std::array<std::shared_ptr<const PointCloud>, 1> all{std::make_shared<const PointCloud>(vertices_of(given))};
-    mesh.vertex_columns = merging::merged_columns(all, {}, context);
+    mesh.vertex_columns = merging::merged_columns(all, {}, {}, context);
     Array<std::int32_t> numbers = group_numbers(model, groups);
     numbers.resize(vertices);
     add_columns(mesh, std::move(numbers), Array<u8>(would_go.begin(), would_go.begin() + std::ptrdiff_t(vertices)),

@@ -172,7 +172,7 @@ ValueFields fields_of(const Value& value) {
     return {cbor_of(writer.header), std::move(writer.arrays)};
 }
 
-constexpr std::string_view magic = "SMVALUE3";
+constexpr std::string_view magic = "SMVALUE4";
 
 struct Preamble {
     char magic[8];
