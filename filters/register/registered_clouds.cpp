@@ -130,12 +130,12 @@ void report(const RegisterViewsResult& found, Context& context) {
         const auto name = [&](std::string_view metric) {
             return i == 0 ? std::string(metric) : fmt::format("{}@{}", metric, i + 1);
         };
-        if (!view.pose) continue;
+        if (!view.pose || found.kept_as_is) continue;
         context.metric(name("overlap"), view.overlap, Unit::ratio);
         context.metric(name("residual"), view.residual, Unit::length);
         context.metric(name("confidence"), view.confidence, Unit::number);
     }
-    context.metric("rms", found.rms, Unit::length);
+    if (!found.kept_as_is) context.metric("rms", found.rms, Unit::length);
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
         pose.unit = unit;
         pose.from = frame.name;
         pose.to = target.name;
-        pose.rms = view.residual;
+        if (!found.kept_as_is) pose.rms = view.residual;
         result.motions.push_back(pose);
     }
     for (const RegisteredPair& pair : found.pairs) {

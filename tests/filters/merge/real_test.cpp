@@ -56,7 +56,7 @@ protected:
             clouds_.back().frame.name = std::filesystem::path(pose.scan).stem();
             frames.push_back(clouds_.back().frame);
         }
-        poses_ = merging::poses_of(frames, poses, context);
+        for (const auto& pose : merging::poses_of(frames, poses, context)) poses_.push_back(pose.value());
         EXPECT_THAT(context.warnings(), testing::IsEmpty());
         surface_ = std::make_unique<Surface>(*read_mesh(model));
     }
