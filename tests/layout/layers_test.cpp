@@ -28,7 +28,8 @@ const std::vector<std::string> layers{"base",     "io",     "record",  "data",  
                                       "filter",   "plugin",  // core
                                       "workflow", "plan",   "gate",    "batch",   "graph",    "cache",   "worker",
                                       "run",      "report", "records", "compare", "session",  "describe"};  // engine
-const std::vector<std::string> geometry_layers{"spatial", "fit", "mesh", "tets", "distance", "growing", "patches"};
+const std::vector<std::string> geometry_layers{"spatial",  "fit",     "mesh",         "tets",
+                                               "distance", "growing", "registration", "patches"};
 
 struct Include {
     std::string file;  ///< relative to core/, geometry/ or engine/: "scanmill/io/atomic_file.cpp"
