@@ -17,6 +17,8 @@ SCANMILL_FILTER() {
                         "The views, each in a frame of its own. The side of the scanner is that of the column "
                         "`approach`, else of `normal`, else +z with a warning.",
                         list)
+        .in<TriangleMesh>("target", "A mesh that stays, such as a CAD model: `points` is then one view, placed on it.",
+                          optional, by_name)
         .out<Transforms>(
             "transform",
             "One motion per placed view, into the frame of the first placed view; it never scales. With the "
@@ -58,7 +60,12 @@ SCANMILL_FILTER() {
             numbered, larger_is_better)
         .metric("rms", Unit::length, "Root mean square distance of the points from the planes of other views.",
                 headline, smaller_is_better)
+        .metric("rival", Unit::ratio, "With a target: share of the points that lie on it in the next best pose.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            return Outputs().set("transform", registered_clouds(inputs.list<PointCloud>("points"), params, context));
+            const auto clouds = inputs.list<PointCloud>("points");
+            if (const auto* target = inputs.find<TriangleMesh>("target"))
+                return Outputs().set("transform", registered_to_mesh(clouds, *target, params, context));
+            return Outputs().set("transform", registered_clouds(clouds, params, context));
         });
 }

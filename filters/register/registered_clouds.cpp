@@ -8,6 +8,7 @@
 #include <map>
 
 #include "merge/scan_poses.hpp"
+#include "register/register_to_target.hpp"
 #include "register/register_views.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -21,6 +22,7 @@ namespace {
 using Views = std::span<const std::shared_ptr<const PointCloud>>;
 
 constexpr std::size_t most_named = 5;  // views in a warning
+constexpr double least_one_sided = 0.3;  // mean length of unit directions; a view has 0.6 and more
 
 /// The names in messages: those of the frames, else by number.
 std::vector<std::string> names_of(Views views) {
@@ -117,6 +119,15 @@ void refuse(const RegisterViewsResult& found, std::span<const std::string> names
     context.doubt(sentence);
 }
 
+RegisterViewsParams options_of(const RegisterParams& params) {
+    RegisterViewsParams options;
+    options.overlap = params.overlap.value();
+    if (params.resolution) options.resolution = params.resolution->value();
+    options.seed_tries = params.seed_tries;
+    options.as_is = params.as_is;
+    return options;
+}
+
 void report(const RegisterViewsResult& found, Context& context) {
     const auto count = [&](std::string_view name, std::size_t number) {
         context.metric(name, static_cast<double>(number));
@@ -159,12 +170,7 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
         for (std::size_t i = 0; i < views.size(); ++i)
             inputs[i].start = RigidMotion{Eigen::Matrix3d::Identity(), views[i]->frame.origin - origin};
     }
-    RegisterViewsParams options;
-    options.overlap = params.overlap.value();
-    if (params.resolution) options.resolution = params.resolution->value();
-    options.seed_tries = params.seed_tries;
-    options.as_is = params.as_is;
-    const RegisterViewsResult found = register_views(inputs, options, context);
+    const RegisterViewsResult found = register_views(inputs, options_of(params), context);
     if (params.as_is && !found.kept_as_is)
         context.warn(found.contradicting
                          ? fmt::format("'{}' and '{}' contradict each other as they are; the views are registered anew",
@@ -206,6 +212,47 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
     }
     report(found, context);
     return result;
+}
+
+Transforms registered_to_mesh(Views scans, const TriangleMesh& target, const RegisterParams& params, Context& context) {
+    if (scans.size() != 1)
+        throw Error("a target takes one scan; there are {}", scans.size())
+            .hint("register the views first, merge them, and place the merged points on the target");
+    const std::vector<std::string> names = names_of(scans);
+    const Frame& frame = scans[0]->frame;
+    if (frame.unit != target.frame.unit)
+        throw Error("'{}' is in {} and the target in {}", names[0], symbol(frame.unit), symbol(target.frame.unit))
+            .hint("declare the units at the workflow's inputs, or convert the files first");
+    if (params.start || params.as_is)
+        throw Error("`start` and `as-is` are for views without a target").hint("`icp` refines a pose on a target");
+    const std::vector<ViewToRegister> inputs = views_to_register(scans, names, context);
+    const auto size = static_cast<double>(scans[0]->size());
+    for (const char* column : {"approach", "normal"})
+        if (const Vec3 sum = mean_direction(*scans[0], column);
+            scans[0]->columns.find(column) && sum.norm() < least_one_sided * size)
+            throw Error("'{}' was scanned from several sides: its column `{}` has a mean of length {:.2f}", names[0],
+                        column, sum.norm() / size)
+                .hint("place one of its views, and move the others with `register` and `merge`");
+    const RegisterToTargetResult found = register_to_target(
+        inputs[0], [&](double spacing) { return samples_of(target, spacing); }, options_of(params), context);
+    const std::string numbers = fmt::format("{:.1f} % of the points fit, {:.1f} % in the next best pose, slide {:.4f}",
+                                            100 * found.fit, 100 * found.rival, found.slide);
+    if (found.refusal != TargetRefusal::none)
+        throw Error("'{}' cannot be placed surely on the target ({}): {}", names[0], name_of(found.refusal), numbers)
+            .hint(found.refusal == TargetRefusal::ambiguous
+                      ? "the part is symmetric: `align` takes pairs of points that decide between its poses"
+                      : "scan more of the part, or start `icp` from a pose near the right one");
+    RigidTransform pose = world(found.pose, frame.origin, target.frame.origin);
+    pose.unit = frame.unit;
+    pose.from = frame.name;
+    pose.to = target.frame.name;
+    context.metric("views", 1);
+    context.metric("placed", 1);
+    context.metric("refused", 0);
+    context.metric("overlap", found.fit, Unit::ratio);
+    context.metric("rival", found.rival, Unit::ratio);
+    context.metric("confidence", found.confidence(), Unit::number);
+    return pose;
 }
 
 }  // namespace scanmill

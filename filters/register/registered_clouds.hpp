@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/data/transform.hpp"
@@ -32,5 +33,12 @@ struct RegisterParams {
 /// OnRefusal::leave_out refused views are a doubt. Metrics: see plugin.cpp.
 Transforms registered_clouds(std::span<const std::shared_ptr<const PointCloud>> views, const RegisterParams& params,
                              Context& context);
+
+/// The motion of one scan onto a mesh that stays, into the mesh's frame. See register_to_target() for method and cost.
+///
+/// Throws Error for not exactly one scan, different units, the errors of register_to_target(), and a scan that does not
+/// fit, slides, or fits equally well in several poses, with numbers. Metrics: see plugin.cpp.
+Transforms registered_to_mesh(std::span<const std::shared_ptr<const PointCloud>> scans, const TriangleMesh& target,
+                              const RegisterParams& params, Context& context);
 
 }  // namespace scanmill

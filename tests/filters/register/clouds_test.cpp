@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "filters/register/cases.hpp"
+#include "support/shapes.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -153,6 +154,54 @@ TEST(RegisterClouds, PosesOfAFile_AreRefined) {
     RegisterParams params;
     params.start = file;
     EXPECT_LT(gap(clouds, run(clouds, params).transforms), 0.3);
+}
+
+CloudsRun run_on(const Clouds& clouds, const TriangleMesh& target) {
+    Context context;
+    return {registered_to_mesh(clouds.clouds, target, {}, context), context.warnings(), {}, context.metrics()};
+}
+
+TEST(RegisterToMesh, AView_IsPlacedOnTheObject) {
+    Clouds clouds = clouds_of(in_random_frames({lump_views()[2]}, 5, 100));
+    TriangleMesh target = lump();
+    target.frame.unit = LengthUnit::millimetre;
+    target.frame.name = "model";
+    target.frame.origin = Vec3(-7, 8, 9);
+    const CloudsRun found = run_on(clouds, target);
+    const RigidTransform& motion = found.transforms.motions.at(0);
+    EXPECT_EQ(motion.to, "model");
+    for (std::size_t i = 0; i < clouds.views[0].points.size(); i += 97) {
+        const Vec3& p = clouds.views[0].points[i];
+        EXPECT_LT(
+            (motion.apply(clouds.clouds[0]->frame.origin + p) - (target.frame.origin + clouds.views[0].truth.apply(p)))
+                .norm(),
+            0.3);
+    }
+    EXPECT_GT(found.metrics.find("overlap")->value, 0.8);
+    EXPECT_LT(found.metrics.find("rival")->value, 0.6);
+}
+
+TEST(RegisterToMesh, ASphereAndAnotherObject_AreRefused_AndSoAreTwoScansAndAnotherUnit) {
+    TriangleMesh sphere = geodesic_sphere(40, 20);
+    sphere.frame.unit = LengthUnit::millimetre;
+    const Clouds of_sphere = clouds_of(in_random_frames({views_of(sphere, 8)[0]}, 5, 100));
+    EXPECT_THAT(error_of([&] { run_on(of_sphere, sphere); }).sentence(),
+                HasSubstr("cannot be placed surely on the target ("));
+    TriangleMesh other = lump(2);
+    other.frame.unit = LengthUnit::millimetre;
+    Clouds clouds = clouds_of(in_random_frames({lump_views()[2]}, 5, 100));
+    EXPECT_THAT(error_of([&] { run_on(clouds, other); }).sentence(), HasSubstr("(no-fit)"));
+    PointCloud round = *clouds.clouds[0];
+    Array<double> normals;
+    for (std::size_t i = 0; i < round.size(); ++i) normals.insert(normals.end(), {0.0, 0.0, i % 2 == 0 ? 1.0 : -1.0});
+    round.columns = {};
+    round.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
+    const Clouds from_all_sides{{}, {std::make_shared<const PointCloud>(round)}};
+    EXPECT_THAT(error_of([&] { run_on(from_all_sides, other); }).sentence(), HasSubstr("scanned from several sides"));
+    other.frame.unit = LengthUnit::inch;
+    EXPECT_EQ(error_of([&] { run_on(clouds, other); }).sentence(), "'view 3' is in mm and the target in in");
+    clouds.clouds.push_back(clouds.clouds[0]);
+    EXPECT_EQ(error_of([&] { run_on(clouds, other); }).sentence(), "a target takes one scan; there are 2");
 }
 
 TEST(RegisterClouds, WithoutAScannersSide_AreWarnedOf) {

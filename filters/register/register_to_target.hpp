@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The pose of one scan on a model that stays, without a start.
+///
+/// Source: as for register_views.hpp; the test against rivals is our own.
+
+#include <functional>
+
+#include "register/register_views.hpp"
+#include "scanmill/data/mesh.hpp"
+
+namespace scanmill {
+
+struct TargetSamples {
+    Array<Vec3> points, normals;
+};
+
+/// Points of the mesh, at most about `spacing` apart, with the normals of their triangles. Triangles without area have
+/// none. Every triangle is divided evenly, so there are no random points. Pre: finite; spacing > 0.
+TargetSamples samples_of(const TriangleMesh& mesh, double spacing);
+
+enum class TargetRefusal {
+    none,
+    ambiguous,  ///< another pose fits equally well
+    slides,  ///< the surfaces do not determine the pose
+    no_fit  ///< too few of the scan's points lie on the model
+};
+/// "ambiguous", "slides", "no-fit"; empty for `none`.
+std::string_view name_of(TargetRefusal refusal);
+
+struct RegisterToTargetResult {
+    /// The best pose, from the scan's frame to the target's; usable only without a refusal.
+    RigidMotion pose;
+    TargetRefusal refusal = TargetRefusal::no_fit;
+    double fit = 0;  ///< share of the scan's points that lie on the model
+    double rival = 0;  ///< the largest share of another pose
+    std::size_t rivals = 0;  ///< number of other poses with at least 0.98 of `fit`
+    RigidMotion rival_pose;
+    double slide = 0;  ///< see PairMeasures::slide
+    double spacing = 0, resolution = 0;
+
+    /// How much better the best pose is than any other.
+    double confidence() const { return fit > 0 ? 1 - rival / fit : 0; }
+};
+
+/// Registers a scan to a target. Tries the poses that descriptors propose, and turns of the best one about the
+/// principal axes of the target, because symmetric parts fit in several poses.
+///
+/// `target` returns samples of the target that are at most as far apart as its argument, which is the spacing of the
+/// scan.
+/// Pre:  units are equal. Throws Error as register_views() for the scan, and for a target without samples.
+/// Determinism: bytes do not depend on the number of threads.
+/// Cost: a few seconds; most of it refines the turned poses.
+RegisterToTargetResult register_to_target(const ViewToRegister& scan,
+                                          const std::function<TargetSamples(double spacing)>& target,
+                                          const RegisterViewsParams& params, Execution& execution);
+
+}  // namespace scanmill
