@@ -18,7 +18,7 @@ constexpr std::size_t chunk = 1024;
 constexpr u32 segments = 4;
 constexpr u32 neighbours = 6;  // whose distance is the spacing at a point
 constexpr double noise_factor = 5;
-constexpr double deviation_per_median = 1.4826;  // of a normal distribution, per median magnitude
+constexpr double deviation_per_median = 1.4826;  // standard deviation per median magnitude of normal numbers
 
 Certificate::Farthest farthest(std::span<const double> distances, std::span<const Vec3> positions) {
     const auto at = static_cast<std::size_t>(std::ranges::max_element(distances) - distances.begin());

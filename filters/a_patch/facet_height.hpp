@@ -46,7 +46,7 @@ public:
     Matrix bending() const;
 
 private:
-    static constexpr std::size_t ordinates = 10;  ///< of a cubic
+    static constexpr std::size_t ordinates = 10;  ///< number of coefficients of a cubic
     /// Exponents of the base point and of the two corners of a part, by ordinate.
     static constexpr std::array<std::array<int, 3>, ordinates> exponents{
         {{3, 0, 0}, {2, 1, 0}, {2, 0, 1}, {1, 2, 0}, {1, 1, 1}, {1, 0, 2}, {0, 3, 0}, {0, 2, 1}, {0, 1, 2}, {0, 0, 3}}};

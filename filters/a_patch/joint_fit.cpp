@@ -361,8 +361,8 @@ private:
 
     struct Sample {
         Numbers basis;
-        double height;  ///< of the point over the triangle
-        double cosine;  ///< of the surface's slope there
+        double height;  ///< distance of the point from the triangle, along its normal
+        double cosine;  ///< cosine of the angle between surface and triangle there
         bool is_inside;
     };
     Sample sample(const Facet& facet, const Vec3& point) const {

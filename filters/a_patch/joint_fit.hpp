@@ -11,10 +11,10 @@ namespace scanmill::a_patches {
 
 struct JointFit {
     double weight = 0;  ///< the bending's, beside the points
-    double offset_rms = 0, offset_max = 0;  ///< of the vertices along their normals
+    double offset_rms = 0, offset_max = 0;  ///< moves of the vertices along their normals
     std::size_t flips = 0, bisected = 0;  ///< numbers of edges
     std::size_t unseen = 0;    ///< number of vertices without a point in their triangles
-    std::vector<double> offsets;  ///< of the vertices along their normals
+    std::vector<double> offsets;  ///< by vertex: its move along its normal
 };
 
 /// Makes the triangles even (make_even()), then minimises

@@ -16,7 +16,7 @@ struct TargetSamples {
 };
 
 /// Points of the mesh, at most about `spacing` apart, with the normals of their triangles. Triangles without area have
-/// none. Every triangle is divided evenly, so there are no random points. Pre: finite; spacing > 0.
+/// none. Every triangle is divided evenly, without random numbers. Pre: finite; spacing > 0.
 TargetSamples samples_of(const TriangleMesh& mesh, double spacing);
 
 enum class TargetRefusal {

@@ -9,7 +9,7 @@
 namespace scanmill::registration {
 
 struct UnitRatio {
-    double ratio;  ///< of the two sizes
+    double ratio;  ///< first size divided by the second
     std::string_view units;  ///< which units would explain it
 };
 

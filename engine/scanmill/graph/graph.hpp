@@ -31,7 +31,7 @@ struct ScanFile {
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
-    std::string pose_refusal;               ///< why there is no pose; if not empty, reading fails with this message
+    std::string pose_refusal;               ///< reason of a refused pose; if not empty, reading fails with it
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
@@ -85,7 +85,7 @@ struct LeafSource {
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
-    std::string pose_refusal{};  ///< why there is no pose; if not empty, reading fails with this message
+    std::string pose_refusal{};  ///< reason of a refused pose; if not empty, reading fails with it
 };
 constexpr auto fields(const LeafSource*) {
     using R = LeafSource;

@@ -222,6 +222,12 @@ PointCloud vertices_of(const TriangleMesh& mesh) {
     return points;
 }
 
+TriangleMesh decimated(const TriangleMesh& mesh, double max_error, Context& context) {
+    DecimateParams params;
+    params.max_error = max_error;
+    return decimate(mesh, nullptr, params, context).mesh;
+}
+
 struct TorusRun {
     TriangleMesh dense, light;
     PatchRun run;
@@ -229,10 +235,8 @@ struct TorusRun {
 };
 TorusRun torus_run(double noise, double max_error, unsigned threads = 2) {
     TorusRun result{dense_torus(noise), {}, {}, {}};
-    DecimateParams params;
-    params.max_error = max_error;
     Context context;
-    result.light = decimate(result.dense, nullptr, params, context).mesh;
+    result.light = decimated(result.dense, max_error, context);
     const PointCloud points = vertices_of(result.dense);
     result.run = patched(result.light, {}, &points, threads);
     result.fine = tessellate(result.run.result.patches, {16, {}}, context);
@@ -278,10 +282,8 @@ TEST(JointFit, AnyNumberOfThreads_GivesTheSameBits) {
 
 TEST(JointFit, OutliersOfTwentyPercent_HardlyMatter) {
     TriangleMesh dense = dense_torus(6e-4);
-    DecimateParams decimation;
-    decimation.max_error = 4e-3;
     Context context;
-    const TriangleMesh light = decimate(dense, nullptr, decimation, context).mesh;
+    const TriangleMesh light = decimated(dense, 4e-3, context);
     Random random(4);
     PointCloud points = vertices_of(dense);
     Array<Vec3> positions(points.positions.begin(), points.positions.end());
@@ -296,10 +298,8 @@ TEST(JointFit, OutliersOfTwentyPercent_HardlyMatter) {
 
 TEST(JointFit, WithoutPointsOnHalfOfTheMesh_TheOtherHalfIsFitted_AndVerticesStayThere) {
     const TriangleMesh dense = dense_torus(0);
-    DecimateParams decimation;
-    decimation.max_error = 1.2e-2;
     Context context;
-    const TriangleMesh light = decimate(dense, nullptr, decimation, context).mesh;
+    const TriangleMesh light = decimated(dense, 1.2e-2, context);
     PointCloud half;
     Array<Vec3> positions;
     for (const Vec3& p : dense.positions)
@@ -320,10 +320,8 @@ TEST(JointFit, WithoutPointsOnHalfOfTheMesh_TheOtherHalfIsFitted_AndVerticesStay
 
 TEST(JointFit, OnePointPerTriangle_IsEnough) {
     const TriangleMesh dense = dense_torus(0);
-    DecimateParams decimation;
-    decimation.max_error = 1.2e-2;
     Context context;
-    const TriangleMesh light = decimate(dense, nullptr, decimation, context).mesh;
+    const TriangleMesh light = decimated(dense, 1.2e-2, context);
     PointCloud points;
     Array<Vec3> positions;
     for (std::size_t i = 0; i < dense.positions.size(); i += dense.positions.size() / light.triangles.size())
