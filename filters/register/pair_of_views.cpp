@@ -12,11 +12,9 @@ namespace {
 
 // Lengths are multiples of the resolution.
 constexpr std::size_t similar_per_point = 3;  ///< the right partner often is not the most similar one
-constexpr std::size_t most_correspondences = 3000;
 constexpr double point_rounds[] = {2, 2, 1.5}, plane_rounds[] = {1.5, 1, 1, 1};
 constexpr double refined_product = 0.7;  ///< least product of the normals of two joined points
 constexpr double same_candidate = 1.5;
-constexpr std::size_t most_candidates = 10;
 constexpr double partner_distance = 1, partner_product = 0.8;
 constexpr double least_facing = 0.5;  ///< cosine of the angle between normal and line of sight
 constexpr double other_place = 5, nearly_equal = 0.8;
@@ -135,7 +133,7 @@ PairResult registered_pair(const ReducedView& first, const ReducedView& second, 
         hypotheses.push_back({*start, 0});
     } else {
         const Array<Correspondence> correspondences =
-            similar_points(first.descriptors, second.descriptors, similar_per_point, most_correspondences);
+            similar_points(first.descriptors, second.descriptors, similar_per_point, params.most_correspondences);
         hypotheses = consistent_motions(first.points_with_normals(), second.points_with_normals(), correspondences,
                                         {resolution, extent.centre, extent.radius, params.seed_tries});
     }
@@ -150,7 +148,7 @@ PairResult registered_pair(const ReducedView& first, const ReducedView& second, 
         Candidate candidate{motion, measured(first, second, motion)};
         candidate.verdict = verdict_of(candidate.measures, params.least_overlap);
         candidates.push_back(candidate);
-        if (candidates.size() == most_candidates) break;
+        if (candidates.size() == params.most_candidates) break;
     }
     result.settle(extent, resolution);
     return result;

@@ -57,6 +57,10 @@ struct PairResult {
 struct PairParams {
     double least_overlap = 0.3;
     std::size_t seed_tries = 20;
+    std::size_t most_candidates = 10;
+    /// The most similar ones are used. More of them find poses of parts with large plane faces, whose points are the
+    /// most similar ones, but the cost is quadratic.
+    std::size_t most_correspondences = 3000;
 };
 
 /// Measures the views at a relative pose from the first view to the second.

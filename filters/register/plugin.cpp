@@ -17,8 +17,10 @@ SCANMILL_FILTER() {
                         "The views, each in a frame of its own. The side of the scanner is that of the column "
                         "`approach`, else of `normal`, else +z with a warning.",
                         list)
-        .in<TriangleMesh>("target", "A mesh that stays, such as a CAD model: `points` is then one view, placed on it.",
-                          optional, by_name)
+        .in<TriangleMesh, PointCloud>(
+            "target",
+            "A mesh or points that stay, such as a CAD model: `points` is then one scan, from one side or all sides.",
+            optional, by_name)
         .out<Transforms>(
             "transform",
             "One motion per placed view, into the frame of the first placed view; it never scales. With the "
@@ -30,6 +32,10 @@ SCANMILL_FILTER() {
             "Edge of the voxels to which views are reduced; `auto` is 4 spacings, or a tenth of the size of a view if "
             "that is larger. Poses are refined with all points.",
             above(0), word("auto"))
+        .param("poses", &P::poses,
+               "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are, and nothing is "
+               "registered.",
+               word("none"))
         .param(
             "start", &P::start,
             "A Stanford .conf or a JSON file with poses to begin with; they are refined and tested, and a wrong one is "
@@ -37,8 +43,7 @@ SCANMILL_FILTER() {
             word("none"))
         .param("as-is", &P::as_is,
                "Whether views that are already in one frame are only tested; if nothing contradicts their poses, they "
-               "keep "
-               "them.")
+               "keep them.")
         .param("seed-tries", &P::seed_tries, "Number of poses of a pair that are refined and tested.", at_least(1))
         .choice("on-refusal", &P::on_refusal,
                 {{"fail", P::OnRefusal::fail, "The step fails, and the message lists every refused view."},
@@ -65,7 +70,9 @@ SCANMILL_FILTER() {
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const auto clouds = inputs.list<PointCloud>("points");
             if (const auto* target = inputs.find<TriangleMesh>("target"))
-                return Outputs().set("transform", registered_to_mesh(clouds, *target, params, context));
+                return Outputs().set("transform", registered_to(*target, clouds, params, context));
+            if (const auto* target = inputs.find<PointCloud>("target"))
+                return Outputs().set("transform", registered_to(*target, clouds, params, context));
             return Outputs().set("transform", registered_clouds(clouds, params, context));
         });
 }

@@ -88,8 +88,8 @@ ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, d
     return reduced(points, {&to_scanner, 1}, resolution, SightLines(rays, to_scanner, resolution));
 }
 
-ReducedView reduced_surface(std::span<const Vec3> points, std::span<const Vec3> normals, double resolution) {
-    return reduced(points, normals, resolution, SightLines({}, Vec3::UnitZ(), resolution));
+ReducedView reduced_surface(std::span<const Vec3> points, std::span<const Vec3> outside, double resolution) {
+    return reduced(points, outside, resolution, SightLines({}, Vec3::UnitZ(), resolution));
 }
 
 }  // namespace scanmill::registration

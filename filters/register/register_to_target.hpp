@@ -13,19 +13,35 @@ namespace scanmill {
 
 struct TargetSamples {
     Array<Vec3> points, normals;
+    double spacing = 0;  ///< about the distance of a point from the nearest other one
 };
 
 /// Points of the mesh, at most about `spacing` apart, with the normals of their triangles. Triangles without area have
 /// none. Every triangle is divided evenly, without random numbers. Pre: finite; spacing > 0.
 TargetSamples samples_of(const TriangleMesh& mesh, double spacing);
 
+/// Points of the cloud, about `spacing` apart or as they are if that is farther, with the normals of the planes through
+/// their neighbours, turned to the scanner. Pre: finite; spacing > 0; `to_scanner` as for ScanToPlace.
+TargetSamples samples_of(std::span<const Vec3> points, std::span<const Vec3> to_scanner, double spacing);
+
+/// A scan from one side or from all sides.
+struct ScanToPlace {
+    std::string name;
+    std::span<const Vec3> points;
+    /// Unit vectors to the scanner: one for all points, or one per point.
+    std::span<const Vec3> to_scanner;
+    /// A pose to begin with.
+    std::optional<RigidMotion> start{};
+};
+
 enum class TargetRefusal {
     none,
     ambiguous,  ///< another pose fits equally well
     slides,  ///< the surfaces do not determine the pose
-    no_fit  ///< too few of the scan's points lie on the model
+    no_fit,  ///< too few of the scan's points lie on the model
+    contradicts  ///< the model is in front of the scan, where the scanner would have hit it first
 };
-/// "ambiguous", "slides", "no-fit"; empty for `none`.
+/// "ambiguous", "slides", "no-fit", "contradicts"; empty for `none`.
 std::string_view name_of(TargetRefusal refusal);
 
 struct RegisterToTargetResult {
@@ -37,7 +53,11 @@ struct RegisterToTargetResult {
     std::size_t rivals = 0;  ///< number of other poses with at least 0.98 of `fit`
     RigidMotion rival_pose;
     double slide = 0;  ///< see PairMeasures::slide
-    double spacing = 0, resolution = 0;
+    /// Of scans from one side: number of the target's points in front of the scan, as a share of these and of the ones
+    /// on it.
+    double front = 0;
+    double spacing = 0;  ///< the larger one of the scan's and the target's
+    double resolution = 0;
 
     /// How much better the best pose is than any other.
     double confidence() const { return fit > 0 ? 1 - rival / fit : 0; }
@@ -51,7 +71,7 @@ struct RegisterToTargetResult {
 /// Pre:  units are equal. Throws Error as register_views() for the scan, and for a target without samples.
 /// Determinism: bytes do not depend on the number of threads.
 /// Cost: a few seconds; most of it refines the turned poses.
-RegisterToTargetResult register_to_target(const ViewToRegister& scan,
+RegisterToTargetResult register_to_target(const ScanToPlace& scan,
                                           const std::function<TargetSamples(double spacing)>& target,
                                           const RegisterViewsParams& params, Execution& execution);
 

@@ -27,8 +27,8 @@ constexpr std::size_t most_pairs = 5000;
 /// The automatic resolution: spacings, and the share of a view's size.
 constexpr double spacings_per_voxel = 4, voxels_per_size = 10.5;
 constexpr std::size_t least_reduced_points = 50;
-/// A triple whose composition differs by less resolutions than this is consistent.
-constexpr double triple_tolerance = 2;
+/// Relative poses that differ by less resolutions than this are the same.
+constexpr double same_pose = 2;
 /// Pairs with less overlap say nothing about the poses: rims and thin walls have a few points in front.
 constexpr double least_checked_overlap = 0.1;
 /// Contradicting pairs have a larger `front`. At relaxed poses, right pairs with enough overlap have up to 0.103. Rims
@@ -81,6 +81,14 @@ public:
         bool is_connected = false;  ///< pairs that overlap lead from each view to each other one
         bool is_right() const { return !contradicting && is_connected; }
     };
+    /// Whether no accepted pair has another relative pose than these.
+    bool confirms(std::span<const RigidMotion> poses) const {
+        return std::ranges::all_of(accepted, [&](const RegisteredPair& pair) {
+            const ViewExtent& extent = reduced_[pair.from]->extent;
+            return displacement(pair.motion, poses[pair.from].then(poses[pair.to].inverse()), extent.centre,
+                                extent.radius) < same_pose * resolution_;
+        });
+    }
     /// Tests poses by lines of sight alone: given poses may be less exact than relaxed ones.
     AsTheyAre tested(std::span<const RigidMotion> poses) const {
         AsTheyAre test;
@@ -192,7 +200,7 @@ private:
                 all.push_back({pair.first, pair.second, best.motion, best.measures.score(), pair.result.is_ambiguous});
                 pair_of_edge.push_back(i);
             }
-        const CheckedEdges checked = checked_by_triples(all, extents, triple_tolerance * resolution_);
+        const CheckedEdges checked = checked_by_triples(all, extents, same_pose * resolution_);
         for (std::size_t i = 0; i < all.size(); ++i)
             if (checked.is_kept[i]) edges_.push_back(all[i]), pair_of_edge_.push_back(pair_of_edge[i]);
         result.triples = checked.triples;
@@ -372,6 +380,17 @@ std::vector<u32> order_of(std::span<const ViewToRegister> views) {
     return order;
 }
 
+/// All views with the poses that they have.
+RegisterViewsResult as_they_are(std::span<const ViewToRegister> views, double spacing, double resolution) {
+    RegisterViewsResult result;
+    result.kept_as_is = true;
+    result.spacing = spacing, result.resolution = resolution;
+    result.views.resize(views.size());
+    for (std::size_t row = 0; row < views.size(); ++row) result.views[row].pose = views[row].start.value_or(RigidMotion());
+    result.placed = views.size();
+    return result;
+}
+
 }  // namespace
 
 std::string_view name_of(ViewRefusal refusal) {
@@ -424,8 +443,9 @@ RegisterViewsResult register_views(std::span<const ViewToRegister> views, const 
     std::vector<std::unique_ptr<ViewSurface>> surfaces(used.size());
     for_each_chunk(execution.threads(), used.size(), 1, [&](std::size_t i, std::size_t) {
         execution.check_cancelled();
-        surfaces[i] = std::make_unique<ViewSurface>(used[i]->points, used[i]->to_scanner.normalized(),
-                                                    normal_neighbours, most_samples);
+        const Vec3 to_scanner = used[i]->to_scanner.normalized();
+        surfaces[i] = std::make_unique<ViewSurface>(used[i]->points, std::span(&to_scanner, 1), normal_neighbours,
+                                                    most_samples);
         spacings[i] = surfaces[i]->spacing();
     });
     for (const u32 row : row_of_used) used_sizes.push_back(sizes[row]);
@@ -436,22 +456,13 @@ RegisterViewsResult register_views(std::span<const ViewToRegister> views, const 
 
     Registration registration(used, surfaces, spacing, resolution, params, execution);
     std::vector<std::optional<RigidMotion>> poses(views.size());
+    std::vector<RigidMotion> given;
     if (params.as_is) {
-        std::vector<RigidMotion> given;
         for (const ViewToRegister* view : used) given.push_back(view->start.value_or(RigidMotion()));
         const auto test = registration.tested(given);
         if (test.contradicting)
             result.contradicting = {row_of_used[test.contradicting->first], row_of_used[test.contradicting->second]};
-        if (test.is_right()) {
-            result.kept_as_is = true;
-            result.spacing = spacing, result.resolution = resolution;
-            for (std::size_t row = 0; row < views.size(); ++row) {
-                result.views[row].pose = views[row].start.value_or(RigidMotion());
-                result.views[row].refusal = ViewRefusal::none;
-            }
-            result.placed = views.size();
-            return result;
-        }
+        if (test.is_right()) return as_they_are(views, spacing, resolution);
     }
     registration.run();
 
@@ -468,6 +479,11 @@ RegisterViewsResult register_views(std::span<const ViewToRegister> views, const 
         view.pose = registration.pose(i);
         if (view.best_with != ~u32(0)) view.best_with = row_of_used[view.best_with];
         result.placed += view.pose.has_value();
+    }
+    if (params.as_is && !contradicting && result.placed < views.size() && registration.confirms(given)) {
+        result = as_they_are(views, spacing, resolution);
+        result.is_unconnected = true;
+        return result;
     }
     const auto first =
         std::ranges::find_if(result.views, [](const RegisteredView& view) { return view.pose.has_value(); });

@@ -25,7 +25,8 @@ struct RegisterViewsParams {
     u32 seed_tries = 20;
     /// The poses of the views (`start`, or the identity) are tested as they are. If no lines of sight contradict them
     /// and overlapping pairs connect all views, they are kept bit for bit; otherwise the views are registered without
-    /// them.
+    /// them. If that refuses a view, and neither a line of sight nor an accepted pair contradicts the poses, they are
+    /// kept after all.
     bool as_is = false;
 };
 
@@ -90,6 +91,8 @@ struct RegisterViewsResult {
     /// are not connected.
     bool kept_as_is = false;
     std::optional<std::pair<u32, u32>> contradicting;
+    /// The poses were kept because nothing contradicts them, but overlapping pairs do not connect all views.
+    bool is_unconnected = false;
 };
 
 /// Registers the views. A view that cannot be placed surely is refused with a reason; it does not stop the others.

@@ -10,6 +10,7 @@
 #include "merge/scan_poses.hpp"
 #include "register/register_to_target.hpp"
 #include "register/register_views.hpp"
+#include "register/view_checks.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
@@ -22,7 +23,6 @@ namespace {
 using Views = std::span<const std::shared_ptr<const PointCloud>>;
 
 constexpr std::size_t most_named = 5;  // views in a warning
-constexpr double least_one_sided = 0.3;  // mean length of unit directions; a view has 0.6 and more
 
 /// The names in messages: those of the frames, else by number.
 std::vector<std::string> names_of(Views views) {
@@ -46,17 +46,35 @@ void require_one_unit(Views views, std::span<const std::string> names) {
                 .hint("declare the units at the workflow's input, or convert the files first");
 }
 
-/// The mean of a column of directions; 0 without such a column.
-Vec3 mean_direction(const PointCloud& view, std::string_view name) {
+/// The unit vectors of a column of directions, one per point; 0 where the column has none. Empty without such a column.
+Array<Vec3> unit_vectors(const PointCloud& view, std::string_view name) {
     const Column* column = view.columns.find(name);
-    Vec3 sum = Vec3::Zero();
-    if (!column || column->components() != 3) return sum;
+    Array<Vec3> directions;
+    if (!column || column->components() != 3) return directions;
     for (std::size_t row = 0; row < column->rows(); ++row) {
         const Vec3 direction(column->number(row, 0), column->number(row, 1), column->number(row, 2));
         const double length = direction.norm();
-        if (length > 0 && std::isfinite(length)) sum += direction / length;
+        directions.push_back(length > 0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::Zero());
     }
-    return sum;
+    return directions;
+}
+
+/// The sum of the directions in the column `approach`, else in `normal`; 0 without both.
+Vec3 mean_direction(const PointCloud& view) {
+    for (const char* column : {"approach", "normal"}) {
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& direction : unit_vectors(view, column)) sum += direction;
+        if (!sum.isZero(0)) return sum;
+    }
+    return Vec3::Zero();
+}
+
+/// Unit vectors to the scanner, one per point: the column `approach`, else `normal`, else +z with a warning.
+Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Context& context) {
+    for (const char* column : {"approach", "normal"})
+        if (Array<Vec3> directions = unit_vectors(cloud, column); !directions.empty()) return directions;
+    context.warn(fmt::format("{} has no column `approach` or `normal`: the scanner is assumed on the side of +z", name));
+    return Array<Vec3>(1, Vec3::UnitZ());
 }
 
 std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::string> names, Context& context) {
@@ -64,8 +82,7 @@ std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::
     std::vector<std::string> assumed;
     for (std::size_t i = 0; i < views.size(); ++i) {
         ViewToRegister view{names[i], views[i]->positions.span(), Vec3::UnitZ(), {}};
-        Vec3 direction = mean_direction(*views[i], "approach");
-        if (direction.isZero(0)) direction = mean_direction(*views[i], "normal");
+        const Vec3 direction = mean_direction(*views[i]);
         if (direction.isZero(0))
             assumed.push_back(names[i]);
         else
@@ -89,6 +106,52 @@ RigidTransform world(const RigidMotion& motion, const Vec3& origin, const Vec3& 
     RigidTransform pose;
     pose.rotation = motion.rotation;
     pose.translation = origin_after + motion.translation - motion.rotation * origin;
+    return pose;
+}
+
+std::vector<Frame> frames_of(Views views) {
+    std::vector<Frame> frames;
+    for (const auto& view : views) frames.push_back(view->frame);
+    return frames;
+}
+
+std::vector<ScanPose> poses_in(const std::filesystem::path& file, Context& context) {
+    return read_poses(file, [&](std::string sentence) { context.warn(std::move(sentence)); });
+}
+
+void report_counts(std::size_t views, std::size_t placed, Context& context) {
+    context.metric("views", static_cast<double>(views));
+    context.metric("placed", static_cast<double>(placed));
+    context.metric("refused", static_cast<double>(views - placed));
+}
+
+/// The motions of `params.poses`.
+Transforms given_motions(Views views, const RegisterParams& params, Context& context) {
+    if (params.start)
+        throw Error("`poses` are taken as they are, so `start` has no use beside them").hint("give one of them");
+    const std::vector<ScanPose> file = poses_in(*params.poses, context);
+    const std::vector<std::optional<RigidTransform>> poses = merging::poses_of(frames_of(views), file, context);
+    Transforms result;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::string& name = views[i]->frame.name;
+        if (poses[i]) {
+            result.motions.push_back(*poses[i]);
+            result.motions.back().from = name;
+        } else {
+            const auto pose = std::ranges::find_if(file, [&](const ScanPose& each) { return is_of(each, name); });
+            result.refused.push_back({name, *pose->refused});
+        }
+    }
+    report_counts(views.size(), result.motions.size(), context);
+    return result;
+}
+
+/// One view stays where it is.
+Transforms unmoved(const PointCloud& view, Context& context) {
+    RigidTransform pose;
+    pose.unit = view.frame.unit;
+    pose.from = pose.to = view.frame.name;
+    report_counts(1, 1, context);
     return pose;
 }
 
@@ -129,13 +192,8 @@ RegisterViewsParams options_of(const RegisterParams& params) {
 }
 
 void report(const RegisterViewsResult& found, Context& context) {
-    const auto count = [&](std::string_view name, std::size_t number) {
-        context.metric(name, static_cast<double>(number));
-    };
-    count("views", found.views.size());
-    count("placed", found.placed);
-    count("refused", found.views.size() - found.placed);
-    count("pairs", found.pairs.size());
+    report_counts(found.views.size(), found.placed, context);
+    context.metric("pairs", static_cast<double>(found.pairs.size()));
     for (std::size_t i = 0; i < found.views.size(); ++i) {
         const RegisteredView& view = found.views[i];
         const auto name = [&](std::string_view metric) {
@@ -153,17 +211,16 @@ void report(const RegisterViewsResult& found, Context& context) {
 
 Transforms registered_clouds(Views views, const RegisterParams& params, Context& context) {
     if (views.empty()) throw Error("needs views; there are none").hint("wire the scans: 'in: {points: views}'");
+    if (params.poses) return given_motions(views, params, context);
+    if (views.size() == 1) return unmoved(*views[0], context);
     const std::vector<std::string> names = names_of(views);
     require_one_unit(views, names);
     const LengthUnit unit = views[0]->frame.unit;
     const Vec3& origin = views[0]->frame.origin;
     std::vector<ViewToRegister> inputs = views_to_register(views, names, context);
     if (params.start) {
-        std::vector<Frame> frames;
-        for (const auto& view : views) frames.push_back(view->frame);
-        const auto warn = [&](std::string sentence) { context.warn(std::move(sentence)); };
         const std::vector<std::optional<RigidTransform>> poses =
-            merging::poses_of(frames, read_poses(*params.start, warn), context);
+            merging::poses_of(frames_of(views), poses_in(*params.start, context), context);
         for (std::size_t i = 0; i < views.size(); ++i)
             if (poses[i]) inputs[i].start = local(*poses[i], views[i]->frame.origin, origin, unit);
     } else if (params.as_is) {
@@ -176,6 +233,10 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
                          ? fmt::format("'{}' and '{}' contradict each other as they are; the views are registered anew",
                                        names[found.contradicting->first], names[found.contradicting->second])
                          : "overlapping pairs do not connect all views as they are; the views are registered anew");
+    if (found.is_unconnected)
+        context.doubt(
+            fmt::format("the {} overlap too little to be tested or registered; they stay as they are",
+                        count_text(names.size(), "view", "views")));
     refuse(found, names, params, context);
 
     const auto first =
@@ -214,45 +275,56 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
     return result;
 }
 
-Transforms registered_to_mesh(Views scans, const TriangleMesh& target, const RegisterParams& params, Context& context) {
+namespace {
+
+using SamplesOf = std::function<TargetSamples(double spacing)>;
+
+Transforms placed_on(const SamplesOf& samples, const Frame& target, Views scans, const RegisterParams& params,
+                     Context& context) {
     if (scans.size() != 1)
         throw Error("a target takes one scan; there are {}", scans.size())
             .hint("register the views first, merge them, and place the merged points on the target");
     const std::vector<std::string> names = names_of(scans);
     const Frame& frame = scans[0]->frame;
-    if (frame.unit != target.frame.unit)
-        throw Error("'{}' is in {} and the target in {}", names[0], symbol(frame.unit), symbol(target.frame.unit))
+    if (frame.unit != target.unit)
+        throw Error("'{}' is in {} and the target in {}", names[0], symbol(frame.unit), symbol(target.unit))
             .hint("declare the units at the workflow's inputs, or convert the files first");
-    if (params.start || params.as_is)
-        throw Error("`start` and `as-is` are for views without a target").hint("`icp` refines a pose on a target");
-    const std::vector<ViewToRegister> inputs = views_to_register(scans, names, context);
-    const auto size = static_cast<double>(scans[0]->size());
-    for (const char* column : {"approach", "normal"})
-        if (const Vec3 sum = mean_direction(*scans[0], column);
-            scans[0]->columns.find(column) && sum.norm() < least_one_sided * size)
-            throw Error("'{}' was scanned from several sides: its column `{}` has a mean of length {:.2f}", names[0],
-                        column, sum.norm() / size)
-                .hint("place one of its views, and move the others with `register` and `merge`");
-    const RegisterToTargetResult found = register_to_target(
-        inputs[0], [&](double spacing) { return samples_of(target, spacing); }, options_of(params), context);
-    const std::string numbers = fmt::format("{:.1f} % of the points fit, {:.1f} % in the next best pose, slide {:.4f}",
-                                            100 * found.fit, 100 * found.rival, found.slide);
+    if (params.poses || params.start || params.as_is)
+        throw Error("`poses`, `start` and `as-is` are for views without a target")
+            .hint("`icp` refines a pose on a target");
+    const Array<Vec3> to_scanner = directions_of(*scans[0], fmt::format("'{}'", names[0]), context);
+    const RegisterToTargetResult found = register_to_target({names[0], scans[0]->positions.span(), to_scanner}, samples,
+                                                            options_of(params), context);
+    const std::string numbers = fmt::format(
+        "{:.1f} % of the points fit, {:.1f} % in the next best pose, {:.1f} % of the target in front, slide {:.4f}",
+        100 * found.fit, 100 * found.rival, 100 * found.front, found.slide);
     if (found.refusal != TargetRefusal::none)
         throw Error("'{}' cannot be placed surely on the target ({}): {}", names[0], name_of(found.refusal), numbers)
             .hint(found.refusal == TargetRefusal::ambiguous
                       ? "the part is symmetric: `align` takes pairs of points that decide between its poses"
                       : "scan more of the part, or start `icp` from a pose near the right one");
-    RigidTransform pose = world(found.pose, frame.origin, target.frame.origin);
+    RigidTransform pose = world(found.pose, frame.origin, target.origin);
     pose.unit = frame.unit;
     pose.from = frame.name;
-    pose.to = target.frame.name;
-    context.metric("views", 1);
-    context.metric("placed", 1);
-    context.metric("refused", 0);
+    pose.to = target.name;
+    report_counts(1, 1, context);
     context.metric("overlap", found.fit, Unit::ratio);
     context.metric("rival", found.rival, Unit::ratio);
     context.metric("confidence", found.confidence(), Unit::number);
     return pose;
+}
+
+}  // namespace
+
+Transforms registered_to(const TriangleMesh& target, Views scans, const RegisterParams& params, Context& context) {
+    return placed_on([&](double spacing) { return samples_of(target, spacing); }, target.frame, scans, params, context);
+}
+
+Transforms registered_to(const PointCloud& target, Views scans, const RegisterParams& params, Context& context) {
+    registration::require_surface(target.positions.span(), "target");
+    const Array<Vec3> to_scanner = directions_of(target, "the target", context);
+    return placed_on([&](double spacing) { return samples_of(target.positions.span(), to_scanner, spacing); },
+                     target.frame, scans, params, context);
 }
 
 }  // namespace scanmill

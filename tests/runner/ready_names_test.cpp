@@ -50,7 +50,7 @@ TEST_F(ReadyNames, SmoothSurfaceOfRawViews_BeginsWithTheStepsOfRawScans) {
         return out.substr(std::min(out.find("   1. "), out.size()));
     };
     const std::string mesh = plan("raw-scans"), steps = mesh.substr(0, mesh.find("  {scan}"));
-    EXPECT_THAT(steps, AllOf(HasSubstr("   8. fill-holes"), HasSubstr("expect closed: true")));
+    EXPECT_THAT(steps, AllOf(HasSubstr("   9. fill-holes"), HasSubstr("expect closed: true")));
     EXPECT_THAT(plan("bernardini-1997-raw"), StartsWith(steps));
 }
 

@@ -131,34 +131,69 @@ TEST(RegisterClouds, ViewsInOneFrame_AreKeptAsTheyAre_AndMovedOnesAreRegisteredA
     EXPECT_THAT(found.warnings, Contains(HasSubstr("registered anew")));
 }
 
-TEST(RegisterClouds, PosesOfAFile_AreRefined) {
-    const Clouds clouds = clouds_of(in_random_frames(lump_views(), 1, 100));
-    const CloudsRun first = run(clouds);
-    const auto file = std::filesystem::path(testing::TempDir()) / "register-start.json";
+/// A file of poses: the motions, moved by `off` along each axis; the last scan is refused if a reason is given.
+std::filesystem::path file_of(const Clouds& clouds, const Transforms& transforms, double off, std::string refused = {}) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "register-poses.json";
     std::ofstream out(file);
     out.precision(17);
-    const auto write = [&](const char* scan, const RigidTransform& motion, double off) {
-        out << R"({"scan": ")" << scan << R"(", "matrix": [)";
-        for (int i = 0; i < 3; ++i)
-            out << "[" << motion.rotation(i, 0) << "," << motion.rotation(i, 1) << "," << motion.rotation(i, 2) << ","
-                << motion.translation[i] + off << "],";
-        out << "[0,0,0,1]]}";
-    };
     out << R"({"scanmill": 1, "unit": "mm", "frame": "view 1", "poses": [)";
-    for (std::size_t i = 0; i < 8; ++i) {
-        if (i > 0) out << ",";
-        write(clouds.views[i].name.c_str(), first.transforms.motions[i], i == 0 ? 0 : 0.5);
+    for (std::size_t i = 0; i < clouds.views.size(); ++i) {
+        const std::string scan = (i > 0 ? ", " : "") + (R"({"scan": ")" + clouds.views[i].name + '"');
+        if (!refused.empty() && i + 1 == clouds.views.size()) {
+            out << scan << R"(, "refused": ")" << refused << "\"}";
+            continue;
+        }
+        const RigidTransform& motion = transforms.motions[i];
+        out << scan << R"(, "matrix": [)";
+        for (int row = 0; row < 3; ++row)
+            out << "[" << motion.rotation(row, 0) << "," << motion.rotation(row, 1) << "," << motion.rotation(row, 2)
+                << "," << motion.translation[row] + (i == 0 ? 0 : off) << "],";
+        out << "[0,0,0,1]]}";
     }
     out << "]}";
-    out.close();
+    return file;
+}
+
+TEST(RegisterClouds, PosesToBeginWith_AreRefined) {
+    const Clouds clouds = clouds_of(in_random_frames(lump_views(), 1, 100));
     RegisterParams params;
-    params.start = file;
+    params.start = file_of(clouds, run(clouds).transforms, 0.5);
     EXPECT_LT(gap(clouds, run(clouds, params).transforms), 0.3);
+}
+
+TEST(RegisterClouds, PosesOfAFile_AreTakenAsTheyAre) {
+    const Clouds clouds = clouds_of(in_random_frames(lump_views(), 1, 100));
+    const Transforms poses = run(clouds).transforms;
+    RegisterParams params;
+    params.poses = file_of(clouds, poses, 0.5, "too dark");
+    params.as_is = true;  // less important than a file
+    const CloudsRun found = run(clouds, params);
+    ASSERT_EQ(found.transforms.motions.size(), 7u);
+    EXPECT_EQ(found.transforms.motions[3].from, "view 4");
+    EXPECT_EQ(found.transforms.motions[3].to, "view 1");
+    EXPECT_LT((found.transforms.motions[3].translation - poses.motions[3].translation - Vec3(0.5, 0.5, 0.5)).norm(), 1e-6);
+    ASSERT_EQ(found.transforms.refused.size(), 1u);
+    EXPECT_EQ(found.transforms.refused[0].from, "view 8");
+    EXPECT_EQ(found.transforms.refused[0].reason, "too dark");
+    EXPECT_EQ(found.metrics.find("refused")->value, 1);
+    params.start = params.poses;
+    EXPECT_THAT(error_of([&] { run(clouds, params); }).sentence(), HasSubstr("`start` has no use"));
+}
+
+TEST(RegisterClouds, ViewsThatNothingConnects_StayAsTheyAreWithADoubt) {
+    std::vector<View> views = {lump_views()[0], views_of(lump(2), 8)[3]};
+    for (Vec3& p : views[1].points) p += Vec3(1e3, 0, 0);
+    views[1].name = "view 2";
+    RegisterParams params;
+    params.as_is = true;
+    const CloudsRun found = run(clouds_of(views), params);
+    EXPECT_EQ(found.transforms.motions.size(), 2u);
+    EXPECT_THAT(found.doubts, Contains(HasSubstr("they stay as they are")));
 }
 
 CloudsRun run_on(const Clouds& clouds, const TriangleMesh& target) {
     Context context;
-    return {registered_to_mesh(clouds.clouds, target, {}, context), context.warnings(), {}, context.metrics()};
+    return {registered_to(target, clouds.clouds, {}, context), context.warnings(), {}, context.metrics()};
 }
 
 TEST(RegisterToMesh, AView_IsPlacedOnTheObject) {
@@ -181,6 +216,42 @@ TEST(RegisterToMesh, AView_IsPlacedOnTheObject) {
     EXPECT_LT(found.metrics.find("rival")->value, 0.6);
 }
 
+TEST(RegisterToMesh, AScanFromAllSides_IsPlacedOnMeshAndPoints) {
+    const RigidMotion motion = in_random_frames({lump_views()[0]}, 5, 100)[0].truth.inverse();
+    PointCloud scan;
+    scan.frame.name = "scan";
+    scan.frame.unit = LengthUnit::millimetre;
+    Array<Vec3> positions;
+    Array<double> approach;
+    for (const View& view : lump_views())
+        for (const Vec3& p : view.points) {
+            positions.push_back(motion.apply(p));
+            const Vec3 direction = motion.turned(view.to_scanner);
+            approach.insert(approach.end(), direction.data(), direction.data() + 3);
+        }
+    scan.positions = std::move(positions);
+    scan.columns.add(Column("approach", 3, Buffer<double>(std::move(approach))));
+    const Clouds clouds{{}, {std::make_shared<const PointCloud>(scan)}};
+    const auto largest_error = [&](const Transforms& found) {
+        double largest = 0;
+        for (std::size_t i = 0; i < scan.size(); i += 997)
+            largest = std::max(largest, (found.motions.at(0).apply(scan.positions[i]) -
+                                         motion.inverse().apply(scan.positions[i]))
+                                            .norm());
+        return largest;
+    };
+    TriangleMesh mesh = lump();
+    mesh.frame.unit = LengthUnit::millimetre;
+    EXPECT_LT(largest_error(run_on(clouds, mesh).transforms), 0.3);
+    PointCloud points = vertices_of(mesh);
+    points.frame.unit = LengthUnit::millimetre;
+    Array<double> normals;
+    for (const Vec3& n : vertex_normals(mesh)) normals.insert(normals.end(), n.data(), n.data() + 3);
+    points.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
+    Context context;
+    EXPECT_LT(largest_error(registered_to(points, clouds.clouds, {}, context)), 0.5);
+}
+
 TEST(RegisterToMesh, ASphereAndAnotherObject_AreRefused_AndSoAreTwoScansAndAnotherUnit) {
     TriangleMesh sphere = geodesic_sphere(40, 20);
     sphere.frame.unit = LengthUnit::millimetre;
@@ -191,13 +262,6 @@ TEST(RegisterToMesh, ASphereAndAnotherObject_AreRefused_AndSoAreTwoScansAndAnoth
     other.frame.unit = LengthUnit::millimetre;
     Clouds clouds = clouds_of(in_random_frames({lump_views()[2]}, 5, 100));
     EXPECT_THAT(error_of([&] { run_on(clouds, other); }).sentence(), HasSubstr("(no-fit)"));
-    PointCloud round = *clouds.clouds[0];
-    Array<double> normals;
-    for (std::size_t i = 0; i < round.size(); ++i) normals.insert(normals.end(), {0.0, 0.0, i % 2 == 0 ? 1.0 : -1.0});
-    round.columns = {};
-    round.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
-    const Clouds from_all_sides{{}, {std::make_shared<const PointCloud>(round)}};
-    EXPECT_THAT(error_of([&] { run_on(from_all_sides, other); }).sentence(), HasSubstr("scanned from several sides"));
     other.frame.unit = LengthUnit::inch;
     EXPECT_EQ(error_of([&] { run_on(clouds, other); }).sentence(), "'view 3' is in mm and the target in in");
     clouds.clouds.push_back(clouds.clouds[0]);
@@ -211,10 +275,25 @@ TEST(RegisterClouds, WithoutAScannersSide_AreWarnedOf) {
         copy.columns = {};
         cloud = std::make_shared<const PointCloud>(copy);
     }
-    clouds.clouds.resize(1);
+    RegisterParams params;
+    params.on_refusal = RegisterParams::OnRefusal::leave_out;
+    Context context;
+    try {
+        registered_clouds(clouds.clouds, params, context);
+    } catch (const Error&) {  // the assumed sides are wrong
+    }
+    EXPECT_THAT(context.warnings(), Contains(HasSubstr("8 views are without a column `approach` or `normal`")));
+}
+
+TEST(RegisterClouds, OneViewStaysWhereItIs_WhateverItHas) {
+    Clouds clouds = clouds_of(lump_views());
+    PointCloud line = cloud_of({Vec3(1, 2, 3), Vec3(2, 4, 6)});
+    line.frame.name = "line";
+    clouds.clouds = {std::make_shared<const PointCloud>(std::move(line))};
     const CloudsRun found = run(clouds);
-    EXPECT_THAT(found.warnings, Contains(HasSubstr("1 view is without a column `approach` or `normal`")));
+    EXPECT_TRUE(found.warnings.empty());
     EXPECT_EQ(found.transforms.motions.at(0).translation, Vec3::Zero());
+    EXPECT_EQ(found.transforms.motions.at(0).to, "line");
 }
 
 TEST(RegisterClouds, TwoNamesOrTwoUnits_AreErrors) {

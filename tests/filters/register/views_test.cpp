@@ -91,6 +91,25 @@ TEST(RegisterViews, PosesAsTheyAre_AreKeptBitForBit_UnlessTheyAreWrong) {
     EXPECT_FALSE(registered(in_random_frames(sides(), 1, 1e4), params).kept_as_is);
 }
 
+TEST(RegisterViews, ViewsAsTheyAreWithoutOverlap_AreKept_UnlessAPairFitsElsewhere) {
+    std::vector<View> views = {sides()[0], views_of(lump(2), 8)[3]};
+    for (Vec3& p : views[1].points) p += Vec3(1e3, 0, 0);
+    RegisterViewsParams params;
+    params.as_is = true;
+    const RegisterViewsResult kept = registered(views, params);
+    EXPECT_TRUE(kept.kept_as_is);
+    EXPECT_TRUE(kept.is_unconnected);
+    EXPECT_EQ(kept.placed, 2u);
+    EXPECT_EQ(kept.views[1].pose->translation, Vec3::Zero());
+    // The stranger is refused, since others show that the views are not in one frame.
+    std::vector<View> more = in_random_frames(sides(), 1, 1e4);
+    more.push_back(views[1]);
+    const RegisterViewsResult found = registered(more, params);
+    EXPECT_FALSE(found.kept_as_is);
+    EXPECT_EQ(found.placed, sides().size());
+    EXPECT_FALSE(found.views.back().pose);
+}
+
 TEST(RegisterViews, OneView_StaysWhereItIs) {
     const RegisterViewsResult result = registered({sides()[0]});
     EXPECT_EQ(result.placed, 1u);

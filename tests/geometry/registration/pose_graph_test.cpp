@@ -63,7 +63,7 @@ TEST(Relaxation, TwoViewsOfACorner_MeetAgain) {
     std::vector<Vec3> moved;
     for (const Vec3& p : corner) moved.push_back(away.apply(p));
     const Vec3 to_scanner = Vec3(1, 1, 1).normalized();
-    const ViewSurface first(corner, to_scanner, 8, 1000), second(moved, to_scanner, 8, 1000);
+    const ViewSurface first(corner, {&to_scanner, 1}, 8, 1000), second(moved, {&to_scanner, 1}, 8, 1000);
     EXPECT_NEAR(first.spacing(), 0.1, 1e-12);
     const ViewSurface* const views[] = {&first, &second};
     const ViewPair pairs[] = {{0, 1}};

@@ -195,9 +195,12 @@ private:
 
 }  // namespace
 
-ViewSurface::ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, std::size_t neighbours,
+ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> to_scanner, std::size_t neighbours,
                          std::size_t most_samples) {
     const PointTree tree(points);
+    Array<Vec3> outside(tree.positions().size(), to_scanner[0]);
+    if (to_scanner.size() > 1)  // of equal positions the lower row counts
+        for (std::size_t row = points.size(); row-- > 0;) outside[tree.index_of_row()[row]] = to_scanner[row];
     points_.assign(tree.positions().begin(), tree.positions().end());
     normals_.resize(points_.size());
     Array<double> distances(points_.size(), 0), variances(points_.size(), 0);
@@ -209,7 +212,7 @@ ViewSurface::ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, s
             around.push_back(Vec3::Zero());
             for (const Neighbour& n : batch.of(i)) around.push_back(points_[n.index] - points_[index]);
             const Scatter scatter = scatter_of(around);
-            normals_[index] = scatter.normal.dot(to_scanner) < 0 ? Vec3(-scatter.normal) : scatter.normal;
+            normals_[index] = scatter.normal.dot(outside[index]) < 0 ? Vec3(-scatter.normal) : scatter.normal;
             double squares = 0;
             for (const Vec3& p : around) squares += (p - scatter.centroid).squaredNorm();
             variances[index] = scatter.surface_variation * squares / static_cast<double>(around.size());
@@ -221,7 +224,7 @@ ViewSurface::ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, s
     const std::size_t count = std::min(most_samples, points.size());
     for (std::size_t i = 0; i < count; ++i) samples_.push_back(tree.index_of_row()[i * points.size() / count]);
     // Two spacings: a few points per cell.
-    grid_.emplace(points_, to_scanner, 2 * std::max(spacing_, least_edge(points_)));
+    grid_.emplace(points_, to_scanner.size() > 1 ? oblique : to_scanner[0], 2 * std::max(spacing_, least_edge(points_)));
 }
 
 ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> normals, double spacing)
@@ -229,6 +232,14 @@ ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> nor
       normals_(normals.begin(), normals.end()),
       spacing_(spacing),
       grid_(std::in_place, points, oblique, 2 * std::max(spacing, least_edge(points))) {}
+
+ViewSurface ViewSurface::with_samples(std::size_t most_samples) const {
+    ViewSurface result = *this;
+    const std::size_t count = std::min(most_samples, samples_.size());
+    result.samples_.clear();
+    for (std::size_t i = 0; i < count; ++i) result.samples_.push_back(samples_[i * samples_.size() / count]);
+    return result;
+}
 
 Agreement agreement(const ViewSurface& from, const ViewSurface& to, const RigidMotion& motion, double tolerance,
                     double close) {

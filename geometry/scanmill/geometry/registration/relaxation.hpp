@@ -18,12 +18,17 @@ namespace scanmill {
 class ViewSurface {
 public:
     /// Keeps each position once. Normals are those of the planes through `neighbours` other points, turned to the
-    /// scanner. Chooses at most `most_samples` points, every k-th row, that are searched for in other views. Pre:
-/// finite points; `to_scanner` is a unit vector. Cost: about 3 us per point for 24 neighbours.
-    ViewSurface(std::span<const Vec3> points, const Vec3& to_scanner, std::size_t neighbours, std::size_t most_samples);
+    /// scanner: `to_scanner` has one direction for all points, or one for each. Chooses at most `most_samples` points,
+    /// every k-th row, that are searched for in other views.
+    /// Pre: finite points and directions. Cost: about 3 us per point for 24 neighbours.
+    ViewSurface(std::span<const Vec3> points, std::span<const Vec3> to_scanner, std::size_t neighbours,
+                std::size_t most_samples);
 
     /// A surface that stays, with given normals, one unit vector per point, and without samples. Pre: distinct points.
     ViewSurface(std::span<const Vec3> points, std::span<const Vec3> normals, double spacing);
+
+    /// The same surface with at most `most_samples` of the samples, every k-th one.
+    ViewSurface with_samples(std::size_t most_samples) const;
 
     std::span<const Vec3> points() const { return points_; }
     std::span<const Vec3> normals() const { return normals_; }
