@@ -14,6 +14,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/geometry/registration/rigid_motion.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 
@@ -57,10 +58,10 @@ struct Fit {
     Vec3 source_mean, target_mean;
     Points source, target;
     Matrix3 rotation;
+    double scale = 1;
     /// Sums of the residuals' squared lengths after the rotation, after the best reflection, and after the rotation
     /// with the best scale.
     double squares = 0, mirrored_squares = 0, scaled_squares = 0;
-    double scale = 1;
 
     Vec3 residual(std::size_t row) const { return target[row] - rotation * source[row]; }
 };
@@ -72,28 +73,12 @@ double squares_of(const Fit& fit, const Matrix3& map) {
     return sum;
 }
 
-/// Kabsch's method: the rotation comes from the singular value decomposition of the pairs' covariance. The last axis is
-/// reversed if the product would be a reflection.
 Fit fit_of(const Points& source, const Points& target) {
-    Fit fit{mean_of(source), mean_of(target), {}, {}, Matrix3::Identity()};
-    fit.source = about(source, fit.source_mean);
-    fit.target = about(target, fit.target_mean);
-    Matrix3 covariance = Matrix3::Zero();
-    double extent = 0;
-    for (std::size_t row = 0; row < source.size(); ++row) {
-        covariance += fit.source[row] * fit.target[row].transpose();
-        extent += fit.source[row].squaredNorm();
-    }
-    const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
-    const auto map_of = [&](double last) -> Matrix3 {
-        return svd.matrixV() * Vec3(1, 1, last).asDiagonal() * svd.matrixU().transpose();
-    };
-    fit.rotation = map_of(sign);
+    const PairsFit pairs = pairs_fit(source, target);
+    Fit fit{pairs.from_mean,  pairs.to_mean, about(source, pairs.from_mean), about(target, pairs.to_mean),
+            pairs.rotation(), pairs.scale()};
     fit.squares = squares_of(fit, fit.rotation);
-    fit.mirrored_squares = squares_of(fit, map_of(-sign));
-    const Vec3& values = svd.singularValues();
-    if (extent > 0) fit.scale = (values[0] + values[1] + sign * values[2]) / extent;
+    fit.mirrored_squares = squares_of(fit, pairs.reflection());
     fit.scaled_squares = squares_of(fit, fit.scale * fit.rotation);
     return fit;
 }

@@ -3,13 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "icp/target.hpp"
 #include "scanmill/base/error.hpp"
@@ -19,6 +18,7 @@
 #include "scanmill/data/robust_box.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/registration/plane_equations.hpp"
 #include "scanmill/geometry/spatial/spatial_order.hpp"
 
 namespace scanmill {
@@ -28,8 +28,6 @@ namespace {
 using detail::Foot;
 using detail::Search;
 using detail::Target;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// With noise of 20 um, 50,000 points determine a pose to about 0.1 um; more points would only take more time.
 constexpr std::size_t most_points = 50'000;
@@ -62,43 +60,12 @@ std::size_t pairs_of_share(double share, std::size_t points) {
     return static_cast<std::size_t>(std::ceil(share * static_cast<double>(points)));
 }
 
-/// A motion as a turn about a pivot near the points, and a shift.
-struct Pose {
-    Vec3 pivot = Vec3::Zero();
-    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-    Vec3 shift = Vec3::Zero();
-
-    Vec3 apply(const Eigen::Matrix3d& rotation, const Vec3& p) const { return rotation * (p - pivot) + pivot + shift; }
-
-    /// Followed by a turn about `centre` and a shift.
-    Pose then(const Eigen::Quaterniond& more, const Vec3& centre, const Vec3& by) const {
-        const Vec3 moved = pivot + shift;
-        return {pivot, (more * turn).normalized(), more.toRotationMatrix() * (moved - centre) + centre + by - pivot};
-    }
-};
-
-/// The pairs of all points at a pose.
+/// The points at a pose.
 struct Pairs {
-    Array<Vec3> points;  ///< moved
-    Array<Vec3> normals;
-    Array<double> residuals;  ///< NaN without a pair
-    std::size_t count = 0;
+    Array<PlanePair> list;  ///< of all points; the residual is NaN without a pair
+    Array<double> magnitudes;  ///< of the residuals, of points with a pair, in any order
     double nearest = 0;  ///< smallest distance of a point from the target, also without a pair
     std::size_t on_boundary = 0;  ///< points near enough, where the target ends
-
-    bool has(std::size_t i) const { return !std::isnan(residuals[i]); }
-};
-
-/// The equations of Gauss and Newton of the weighted pairs.
-struct Equations {
-    Vec3 centre = Vec3::Zero();
-    double radius = 0;
-    Matrix6 matrix = Matrix6::Zero();
-    Vector6 gradient = Vector6::Zero();
-    Vector6 eigenvalues = Vector6::Zero();
-    Matrix6 eigenvectors = Matrix6::Zero();
-
-    u32 free_directions() const { return static_cast<u32>((eigenvalues.array() < least_slide).count()); }
 };
 
 class Refinement {
@@ -114,18 +81,20 @@ public:
           context_(context),
           hints_(points_.size(), NearestTriangle::none) {
         const std::size_t count = points_.size();
-        pairs_.points.resize(count);
-        pairs_.normals.resize(count);
-        pairs_.residuals.resize(count);
+        pairs_.list.resize(count);
+        pairs_.magnitudes.reserve(count);
         distances_.resize(count);
         valid_.resize(count);
         Vec3 sum = Vec3::Zero();
         for (const Vec3& p : points_) sum += p - points_[0];
-        pose_.pivot = points_[0] + sum / static_cast<double>(count);
+        pivot_ = points_[0] + sum / static_cast<double>(count);
         const double diagonal = bounding_box(points_).diagonal();
         least_cut_ = least_cut * std::min(diagonal, target.diagonal());
         result_.tolerance = std::max(tolerance_share * point_spacing(points_), rounding * diagonal);
-        for (std::size_t i = 0; i < count; ++i) pairs_.points[i] = points_[i];
+        for (std::size_t i = 0; i < count; ++i) {
+            points_[i] -= pivot_;
+            pairs_.list[i].point = points_[i];
+        }
     }
 
     /// Runs to the end; `explain` is added to the hint if there are too few pairs.
@@ -139,7 +108,9 @@ public:
             const double tight = tight_cut();
             const bool is_tight = counts_equally() || level <= tight;
             cut_ = counts_equally() ? limit_ : std::min(limit_, std::max(level, tight));
-            equations_ = equations_of(is_tight ? trim_limit() : cut_);
+            weight_pairs(is_tight ? trim_limit() : cut_);
+            equations_ = plane_equations(pairs_.list);
+            if (!(equations_.radius > rounding * target_.diagonal())) equations_ = {};
             if (result_.converged || result_.iterations == params_.max_iterations) break;
             move();
             result_.converged = is_tight && result_.last_motion <= result_.tolerance;
@@ -149,9 +120,11 @@ public:
         summarise(explain);
     }
 
-    const Pose& pose() const { return pose_; }
+    /// The motion of points relative to pivot(), which is in the coordinates of the target.
+    const RigidMotion& motion() const { return motion_; }
+    const Vec3& pivot() const { return pivot_; }
     const IcpResult& result() const { return result_; }
-    const Equations& equations() const { return equations_; }
+    const PlaneEquations& equations() const { return equations_; }
     double median_residual() const { return median_; }
 
 private:
@@ -163,18 +136,21 @@ private:
             Search search;
             for (std::size_t i = begin; i < end; ++i) {
                 if (hints_[i] != NearestTriangle::none) search.hint = hints_[i];
-                const Foot foot = target_.foot(pairs_.points[i], search);
+                PlanePair& pair = pairs_.list[i];
+                const Foot foot = target_.foot(pivot_ + pair.point, search);
                 hints_[i] = search.hint;
                 distances_[i] = foot.distance;
                 valid_[i] = foot.is_valid;
-                pairs_.normals[i] = foot.normal;
-                pairs_.residuals[i] = foot.is_valid && foot.distance <= limit_ ? foot.residual : std::nan("");
+                pair.normal = foot.normal;
+                pair.residual = foot.is_valid && foot.distance <= limit_ ? foot.residual : std::nan("");
             }
         });
-        pairs_.count = pairs_.on_boundary = 0;
+        pairs_.magnitudes.clear();
+        pairs_.on_boundary = 0;
         pairs_.nearest = *std::ranges::min_element(distances_);
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            pairs_.count += pairs_.has(i);
+            const double residual = pairs_.list[i].residual;
+            if (!std::isnan(residual)) pairs_.magnitudes.push_back(std::abs(residual));
             pairs_.on_boundary += distances_[i] <= limit_ && !valid_[i];
         }
     }
@@ -182,79 +158,34 @@ private:
     /// The cut by the median of the residuals that the cut before leaves.
     double tight_cut() {
         Array<double> magnitudes;
-        magnitudes.reserve(points_.size());
-        for (const double r : pairs_.residuals)
-            if (std::abs(r) <= cut_) magnitudes.push_back(std::abs(r));
+        magnitudes.reserve(pairs_.magnitudes.size());
+        std::ranges::copy_if(pairs_.magnitudes, std::back_inserter(magnitudes), [&](double r) { return r <= cut_; });
         median_ = magnitudes.empty() ? 0 : median(magnitudes);
         return std::max(tukey_cut * deviation_by_median * median_, least_cut_);
     }
 
     /// The largest residual that counts after trimming.
-    double trim_limit() const {
-        Array<double> magnitudes;
-        magnitudes.reserve(points_.size());
-        for (const double r : pairs_.residuals)
-            if (!std::isnan(r)) magnitudes.push_back(std::abs(r));
-        if (magnitudes.empty()) return 0;
-        return std::min(cut_, quantile(magnitudes, 1 - params_.trim.value()));
+    double trim_limit() {
+        if (pairs_.magnitudes.empty()) return 0;
+        return std::min(cut_, quantile(pairs_.magnitudes, 1 - params_.trim.value()));
     }
 
     /// Pairs with residuals up to `largest` count.
-    Equations equations_of(double largest) const {
-        Equations equations;
-        Array<double> weights(points_.size(), 0);
-        double weight = 0;
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            const double r = pairs_.residuals[i];
-            if (!(std::abs(r) <= largest)) continue;
-            const double share = r / cut_, rest = 1 - share * share;
-            weights[i] = counts_equally() ? 1 : rest * rest;
-            weight += weights[i];
-            sum += weights[i] * (pairs_.points[i] - pose_.pivot);
+    void weight_pairs(double largest) {
+        for (PlanePair& pair : pairs_.list) {
+            const double share = pair.residual / cut_, rest = 1 - share * share;
+            pair.weight = !(std::abs(pair.residual) <= largest) ? 0 : counts_equally() ? 1 : rest * rest;
         }
-        if (!(weight > 0)) return equations;
-        equations.centre = pose_.pivot + sum / weight;
-        double squares = 0;
-        for (std::size_t i = 0; i < points_.size(); ++i)
-            if (weights[i] > 0) squares += weights[i] * (pairs_.points[i] - equations.centre).squaredNorm();
-        equations.radius = std::sqrt(squares / weight);
-        if (!(equations.radius > rounding * target_.diagonal())) return equations;
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            if (!(weights[i] > 0)) continue;
-            Vector6 row;
-            row.head<3>() = (pairs_.points[i] - equations.centre).cross(pairs_.normals[i]) / equations.radius;
-            row.tail<3>() = pairs_.normals[i];
-            const Vector6 weighted = weights[i] * row;
-            equations.matrix.noalias() += weighted * row.transpose();
-            equations.gradient += pairs_.residuals[i] * weighted;
-        }
-        equations.matrix /= weight;
-        equations.gradient /= weight;
-        const Eigen::SelfAdjointEigenSolver<Matrix6> solver(equations.matrix);
-        equations.eigenvalues = solver.eigenvalues();
-        equations.eigenvectors = solver.eigenvectors();
-        return equations;
     }
 
-    /// One step of Gauss and Newton, in the directions that are determined.
+    /// One Gauss-Newton step.
     void move() {
-        Vector6 step = Vector6::Zero();
-        for (int i = 0; i < 6; ++i)
-            if (equations_.eigenvalues[i] >= least_slide) {
-                const Vector6 direction = equations_.eigenvectors.col(i);
-                step -= direction.dot(equations_.gradient) / equations_.eigenvalues[i] * direction;
-            }
-        // The quaternion (1, v / 2) turns by v up to its third power, without a sine.
-        const Vec3 half = step.head<3>() / (2 * std::max(equations_.radius, rounding * target_.diagonal()));
-        const Eigen::Quaterniond turn = Eigen::Quaterniond(1, half.x(), half.y(), half.z()).normalized();
-        pose_ = pose_.then(turn, equations_.centre, step.tail<3>());
-        const Eigen::Matrix3d rotation = pose_.turn.toRotationMatrix();
+        motion_ = orthonormal(motion_.then(equations_.motion(least_slide)));
         double farthest = 0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const Vec3 moved = pose_.apply(rotation, points_[i]);
-            farthest = std::max(farthest, (moved - pairs_.points[i]).squaredNorm());
-            pairs_.points[i] = moved;
+            const Vec3 moved = motion_.apply(points_[i]);
+            farthest = std::max(farthest, (moved - pairs_.list[i].point).squaredNorm());
+            pairs_.list[i].point = moved;
         }
         result_.last_motion = std::sqrt(farthest);
     }
@@ -262,8 +193,8 @@ private:
     void summarise(const std::function<std::string()>& explain) {
         std::size_t on_target = 0;
         double squares = 0;
-        for (const double r : pairs_.residuals)
-            if (std::abs(r) <= cut_) ++on_target, squares += r * r;
+        for (const PlanePair& pair : pairs_.list)
+            if (std::abs(pair.residual) <= cut_) ++on_target, squares += pair.residual * pair.residual;
         const std::size_t least = std::max(least_pairs, pairs_of_share(least_overlap, points_.size()));
         if (on_target < least)
             throw Error(
@@ -275,8 +206,9 @@ private:
         result_.cut = cut_;
         result_.overlap = static_cast<double>(on_target) / static_cast<double>(points_.size());
         result_.rms = std::sqrt(squares / static_cast<double>(on_target));
-        result_.slide = std::max(0.0, equations_.eigenvalues[0]);
-        result_.free_directions = equations_.free_directions();
+        const Vector6 eigenvalues = equations_.eigenvalues();
+        result_.slide = std::max(0.0, eigenvalues[0]);
+        result_.free_directions = static_cast<u32>((eigenvalues.array() < least_slide).count());
         if (result_.free_directions > most_free_directions)
             throw Error("the pairs determine only {} of 6 directions of motion; a plane or a sphere determines 3",
                         6 - result_.free_directions)
@@ -285,11 +217,11 @@ private:
 
     void require_pairs(const std::function<std::string()>& explain) const {
         const std::size_t least = std::max(least_pairs, pairs_of_share(least_overlap, points_.size()));
-        if (pairs_.count >= least) return;
+        if (pairs_.magnitudes.size() >= least) return;
         throw Error(
             "only {} of {} points of the source have a pair within `max-distance`, {:.4g} {}; at least {} are needed. "
             "The nearest point is {:.4g} {} from the target{}",
-            pairs_.count, points_.size(), limit_, unit_, least, pairs_.nearest, unit_,
+            pairs_.magnitudes.size(), points_.size(), limit_, unit_, least, pairs_.nearest, unit_,
             pairs_.on_boundary > 0 ? fmt::format("; {} nearest to its boundary, which does not count",
                                                  count_text(pairs_.on_boundary, "point is", "points are"))
                                    : "")
@@ -297,7 +229,8 @@ private:
     }
 
     const Target& target_;
-    Array<Vec3> points_;
+    Array<Vec3> points_;  ///< relative to `pivot_`
+    Vec3 pivot_ = Vec3::Zero();  ///< centroid of the points: near 0, motions lose no digits
     double limit_, least_cut_ = 0, cut_ = 0, median_ = 0;
     const IcpParams& params_;
     std::string_view unit_;
@@ -305,9 +238,9 @@ private:
     Array<u32> hints_;
     Array<double> distances_;
     std::vector<u8> valid_;
-    Pose pose_;
+    RigidMotion motion_;
     Pairs pairs_;
-    Equations equations_;
+    PlaneEquations equations_;
     IcpResult result_;
 };
 
@@ -356,12 +289,12 @@ std::string scale_hint(double ratio) {
 }
 
 /// What slides on itself in that many ways, with its article.
-std::string_view sliding_shape(const Equations& equations, u32 directions) {
+std::string_view sliding_shape(const PlaneEquations& equations, u32 directions) {
     if (directions == 1) return "a body of revolution or an extrusion";
     if (directions == 2) return "a cylinder";
     // The turns of a sphere have three axes, those of a plane one.
     constexpr double least_turn = 0.1;
-    const Eigen::Matrix3d turns = equations.eigenvectors.topLeftCorner<3, 3>();
+    const Eigen::Matrix3d turns = equations.eigenvectors().topLeftCorner<3, 3>();
     return Eigen::JacobiSVD<Eigen::Matrix3d>(turns).singularValues()[1] > least_turn ? "a sphere" : "a plane";
 }
 
@@ -406,10 +339,10 @@ IcpResult refined(const PointCloud& source, const Target& target, const Frame& t
     refinement.run([&] { return scale_hint(target_size / diagonal); });
 
     IcpResult result = refinement.result();
-    const Pose& pose = refinement.pose();
-    const Vec3 pivot = target_frame.origin + pose.pivot;
-    result.transform.rotation = pose.turn.toRotationMatrix();
-    result.transform.translation = pose.shift + (pivot - result.transform.rotation * pivot);
+    const RigidMotion& motion = refinement.motion();
+    const Vec3 pivot = target_frame.origin + refinement.pivot();
+    result.transform.rotation = motion.rotation;
+    result.transform.translation = motion.translation + (pivot - result.transform.rotation * pivot);
     result.transform.unit = source.frame.unit;
     result.transform.from = source.frame.name;
     result.transform.to = target_frame.name;

@@ -66,7 +66,7 @@ struct IcpResult {
 /// Motion. Each iteration solves the Gauss-Newton equations H x = -g with H = mean of J^T J, J = (c × n / R, n), over
 /// the weighted pairs: n is the direction of the residual, c the point relative to the pairs' centroid, R the root mean
 /// square of |c|. Directions of motion with an eigenvalue below 0.002 are not determined by the surfaces; the scan does
-/// not move along them. The rotation is composed of unit quaternions.
+/// not move along them.
 ///
 /// Pre:  finite coordinates, equal units. The names of the frames may differ. Lengths refer to the source.
 /// Post: doubts the result if `max_iterations` do not suffice, if a direction is not determined (with the shape that

@@ -16,7 +16,7 @@ IcpResult refined(const Inputs& inputs, const IcpParams& params, Context& contex
 
 SCANMILL_FILTER() {
     using P = IcpParams;
-    return Declare<P>("icp", 1)
+    return Declare<P>("icp", 2)
         .summary("Finds the rigid motion that brings a scan, which is already near, onto a mesh or other points.")
         .source("Chen, Medioni 1992; Chetverikov et al. 2002; Gelfand et al. 2003")
         .ties(

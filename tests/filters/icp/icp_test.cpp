@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstring>
 
 #include "filters/icp/cases.hpp"
@@ -133,6 +134,32 @@ TEST(Icp, Trim_RemovesTheLargestResiduals) {
     EXPECT_NEAR(height(20), 0, 1e-5);
     EXPECT_NEAR(height(0), -0.006, 1e-5);
     EXPECT_LT(height(10), -0.001);
+}
+
+TEST(Icp, Weights_AreThoseOfTukeysBiweight) {
+    // As above, with the last ones at 0.05: within the cut of about 0.13, but with a smaller weight.
+    const std::array<double, 5> heights{0.01, 0.01, -0.01, -0.01, 0.05};
+    std::vector<Vec3> points;
+    for (int i = 2; i < 52; ++i)
+        for (int j = 2; j < 52; ++j) points.emplace_back(i, j, heights[static_cast<std::size_t>((i + 2 * j) % 5)]);
+    double expected = 0.01;  // of least squares
+    for (int round = 0; round < 100; ++round) {
+        std::array<double, 5> residuals = heights;
+        for (double& r : residuals) r -= expected;
+        std::ranges::sort(residuals, {}, [](double r) { return std::abs(r); });
+        const double cut = 4.685 * 1.4826 * std::abs(residuals[2]);
+        double weights = 0, sum = 0;
+        for (const double r : residuals) {
+            const double root = 1 - r * r / (cut * cut), weight = root * root;
+            weights += weight, sum += weight * r;
+        }
+        expected += sum / weights;
+    }
+    EXPECT_NEAR(expected, 0.0087, 1e-4);
+    IcpParams params = within(1);
+    params.trim = Ratio::percent(1e-9);
+    const Refined result = refined(cloud(points), square(54), params);
+    EXPECT_NEAR(result.transform.apply(Vec3(26.5, 26.5, 0)).z(), -expected, 1e-4);
 }
 
 TEST(Icp, PointsOffTheTarget_AreNoOverlap) {

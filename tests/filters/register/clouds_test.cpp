@@ -245,8 +245,13 @@ TEST(RegisterToMesh, AScanFromAllSides_IsPlacedOnMeshAndPoints) {
     EXPECT_LT(largest_error(run_on(clouds, mesh).transforms), 0.3);
     PointCloud points = vertices_of(mesh);
     points.frame.unit = LengthUnit::millimetre;
-    Array<double> normals;
-    for (const Vec3& n : vertex_normals(mesh)) normals.insert(normals.end(), n.data(), n.data() + 3);
+    Array<double> normals(3 * points.size(), 0);
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+        const Vec3 area = (b - a).cross(c - a);
+        for (const u32 vertex : t)
+            for (int axis = 0; axis < 3; ++axis) normals[3 * vertex + static_cast<u32>(axis)] += area[axis];
+    }
     points.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
     Context context;
     EXPECT_LT(largest_error(registered_to(points, clouds.clouds, {}, context)), 0.5);

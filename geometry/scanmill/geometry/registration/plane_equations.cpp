@@ -11,6 +11,8 @@ Vector6 PlaneEquations::eigenvalues() const {
     return Eigen::SelfAdjointEigenSolver<Matrix6>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+Matrix6 PlaneEquations::eigenvectors() const { return Eigen::SelfAdjointEigenSolver<Matrix6>(matrix).eigenvectors(); }
+
 RigidMotion PlaneEquations::motion(double least_eigenvalue) const {
     if (!(radius > 0)) return {};
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(matrix);
@@ -25,31 +27,31 @@ RigidMotion PlaneEquations::motion(double least_eigenvalue) const {
 
 PlaneEquations plane_equations(std::span<const PlanePair> pairs) {
     PlaneEquations equations;
-    if (pairs.empty()) return equations;
-    const double count = static_cast<double>(pairs.size());
+    double total = 0, squares = 0;
     Vec3 sum = Vec3::Zero();
-    for (const PlanePair& pair : pairs) sum += pair.point;
-    equations.centre = sum / count;
-    double squares = 0;
-    for (const PlanePair& pair : pairs) squares += (pair.point - equations.centre).squaredNorm();
-    equations.radius = std::sqrt(squares / count);
-    if (!(equations.radius > 0)) return equations;
-    // Only the lower triangle, column by column: half of the products.
-    double sums[21] = {};
     for (const PlanePair& pair : pairs) {
-        const Vec3 arm = (pair.point - equations.centre).cross(pair.normal) / equations.radius;
-        const double j[6] = {arm.x(), arm.y(), arm.z(), pair.normal.x(), pair.normal.y(), pair.normal.z()};
-        int next = 0;
-        for (int column = 0; column < 6; ++column) {
-            for (int row = column; row < 6; ++row) sums[next++] += j[row] * j[column];
-            equations.gradient[column] += j[column] * pair.residual;
-        }
+        total += pair.weight;
+        sum += pair.weight * pair.point;
     }
-    int next = 0;
-    for (int column = 0; column < 6; ++column)
-        for (int row = column; row < 6; ++row)
-            equations.matrix(row, column) = equations.matrix(column, row) = sums[next++] / count;
-    equations.gradient /= count;
+    if (!(total > 0)) return equations;
+    equations.centre = sum / total;
+    for (const PlanePair& pair : pairs) squares += pair.weight * (pair.point - equations.centre).squaredNorm();
+    equations.radius = std::sqrt(squares / total);
+    if (!(equations.radius > 0)) return equations;
+    Matrix6 sums = Matrix6::Zero();
+    Vector6 gradient = Vector6::Zero(), j;
+    for (const PlanePair& pair : pairs) {
+        if (!(pair.weight > 0)) continue;  // the residual may be NaN
+        j.head<3>() = (pair.point - equations.centre).cross(pair.normal) / equations.radius;
+        j.tail<3>() = pair.normal;
+        const Vector6 weighted = pair.weight * j;
+        sums.noalias() += j * weighted.transpose();
+        gradient += pair.residual * weighted;
+    }
+    // The halves differ by rounding; a symmetric matrix takes one.
+    equations.matrix = sums.selfadjointView<Eigen::Lower>();
+    equations.matrix /= total;
+    equations.gradient = gradient / total;
     return equations;
 }
 

@@ -24,7 +24,16 @@ double displacement(const RigidMotion& one, const RigidMotion& other, const Vec3
     return std::sqrt(shift.squaredNorm() + radius * radius * turn.squaredNorm() / 4);
 }
 
-RigidMotion fitted_motion(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights) {
+double PairsFit::scale() const {
+    return from_squares > 0 ? (values[0] + values[1] + (mirrors ? -1 : 1) * values[2]) / from_squares : 1;
+}
+
+RigidMotion PairsFit::motion() const {
+    const Eigen::Matrix3d turn = rotation();
+    return {turn, to_mean - turn * from_mean};
+}
+
+PairsFit pairs_fit(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights) {
     assert(from.size() == to.size() && !from.empty() && (weights.empty() || weights.size() == from.size()));
     const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
     Vec3 from_sum = Vec3::Zero(), to_sum = Vec3::Zero();
@@ -34,15 +43,21 @@ RigidMotion fitted_motion(std::span<const Vec3> from, std::span<const Vec3> to, 
         to_sum += weight(i) * to[i];
         total += weight(i);
     }
-    const Vec3 from_mean = from_sum / total, to_mean = to_sum / total;
+    PairsFit fit;
+    fit.from_mean = from_sum / total, fit.to_mean = to_sum / total;
     Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < from.size(); ++i)
-        products += weight(i) * (from[i] - from_mean) * (to[i] - to_mean).transpose();
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        products += weight(i) * (from[i] - fit.from_mean) * (to[i] - fit.to_mean).transpose();
+        fit.from_squares += weight(i) * (from[i] - fit.from_mean).squaredNorm();
+    }
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const bool reflects = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
-    const Eigen::Matrix3d rotation =
-        svd.matrixV() * Vec3(1, 1, reflects ? -1 : 1).asDiagonal() * svd.matrixU().transpose();
-    return {rotation, to_mean - rotation * from_mean};
+    fit.left = svd.matrixU(), fit.right = svd.matrixV(), fit.values = svd.singularValues();
+    fit.mirrors = (fit.right * fit.left.transpose()).determinant() < 0;
+    return fit;
+}
+
+RigidMotion fitted_motion(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights) {
+    return pairs_fit(from, to, weights).motion();
 }
 
 }  // namespace scanmill
