@@ -27,18 +27,23 @@ constexpr std::size_t normal_neighbours = 24, most_samples = 4000, few_samples =
 constexpr double settled = 0.01;  ///< in spacings
 /// The share of few samples has a standard deviation of 0.01; poses below this share of the best fit cannot be equal.
 constexpr double worth_finishing = 0.9;
-/// A point lies on the model within these distances, in spacings of the scan: to the nearest sample, and to its plane.
-constexpr double near_target = 4, on_target = 2;
+/// A point lies on the target within this distance from the plane of the nearest sample, which is at most twice as far.
+/// Real parts deviate from their models, so dense scans are measured by the resolution.
+constexpr double on_target_spacings = 2, on_target_resolutions = 0.2;
 /// Poses with a smaller share of reduced points near the model cannot fit well enough; they are not refined further.
 constexpr double least_coarse_overlap = 0.6;
-/// The least share of the scan's points on the model.
+/// The least share of the scan's points on the target.
 constexpr double least_fit = 0.8;
+/// Largest share of the target's points in front of the scan. Right poses have up to 0.036, wrong ones 0.08 to 0.13 or a
+/// rival.
+constexpr double largest_in_front = 0.08;
 /// The mean of the directions to the scanner is at least this long for a scan from one side, whose lines of sight are
-/// tested. Wrong poses of parts had 8 to 14 % of the target in front within this reach, in spacings; right ones up to 2 %.
-constexpr double least_one_sided = 0.8, sight_reach = 2.5;
-/// A rival is equal with this share of the best fit. Small notches change the fit by 0.02 to 0.06; the share itself has
-/// a standard deviation of 0.002.
-constexpr double equal_fit = 0.98;
+/// tested with this reach, in multiples of the distance above.
+constexpr double least_one_sided = 0.8, sight_reach = 1.25;
+/// A rival is equal with this share of the best fit, because small notches change the fit by 0.02 to 0.06, and the share
+/// itself has a standard deviation of 0.002. It is equal, too, if it leaves less than this many times the points that
+/// the best pose leaves: then neither may be right.
+constexpr double equal_fit = 0.98, equal_rest = 2;
 /// Poses that displace the scan by less resolutions are the same.
 constexpr double same_pose = 2;
 /// With a start: all other equal poses must be so many resolutions farther from it.
@@ -46,6 +51,8 @@ constexpr double clearly_farther = 5;
 /// Turns about a principal axis, as shares of a full turn: parts have 3, 5, 6, 7 or 8 equal holes. Halves and quarters
 /// are among the rotations of the cube.
 constexpr int symmetries[] = {3, 5, 6, 7, 8};
+/// A turned pose that fits better is turned again, so that turns about two axes are found.
+constexpr int most_probe_rounds = 4;
 /// Refining a pose with reduced points is cheap, so all that the descriptors propose are refined.
 constexpr std::size_t all_seeds = 300, all_correspondences = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t most_target_samples = 2'000'000;
@@ -110,7 +117,7 @@ Vec3 mean_of(std::span<const Vec3> directions) {
 /// hit them first.
 double share_in_front(const ViewSurface& scan, const Vec3& to_scanner, const ReducedView& target,
                       const RegisterToTargetResult& result) {
-    const double reach = sight_reach * result.spacing;
+    const double reach = sight_reach * result.tolerance;
     const SightLines sight(scan.points(), to_scanner, reach);
     const RigidMotion to_scan = result.pose.inverse();
     std::size_t front = 0, on = 0;
@@ -126,13 +133,13 @@ double share_in_front(const ViewSurface& scan, const Vec3& to_scanner, const Red
 class Fitting {
 public:
     Fitting(const ViewSurface& scan, const ViewSurface& target, const ReducedView& reduced_scan,
-            const ReducedView& reduced_target, double spacing, const Execution& execution)
+            const ReducedView& reduced_target, double tolerance, const Execution& execution)
         : scan_(scan),
           few_(scan.with_samples(few_samples)),
           target_(target),
           reduced_scan_(reduced_scan),
           reduced_target_(reduced_target),
-          spacing_(spacing),
+          tolerance_(tolerance),
           execution_(execution) {}
 
     /// Fits with the reduced points, then with few samples.
@@ -152,7 +159,7 @@ public:
     void finish(std::vector<Pose>& poses) const {
         double best = 0;
         for (const Pose& pose : poses) best = std::max(best, pose.fit);
-        const RelaxationStage stages[] = {{3 * spacing_, 12}};
+        const RelaxationStage stages[] = {{1.5 * tolerance_, 12}};
         in_parallel(poses, [&](std::size_t i) {
             return poses[i].fit > 0 && poses[i].fit >= worth_finishing * best
                        ? fitted(scan_, poses[i].motion, stages)
@@ -174,8 +181,8 @@ private:
         const ViewPair pairs[] = {{0, 1}};
         const Execution one_thread;
         const RigidMotion motion =
-            relaxed(surfaces, {RigidMotion(), start}, pairs, stages, settled * spacing_, one_thread).poses[1];
-        const Agreement on = agreement(scan, target_, motion, near_target * spacing_, on_target * spacing_);
+            relaxed(surfaces, {RigidMotion(), start}, pairs, stages, settled * scan.spacing(), one_thread).poses[1];
+        const Agreement on = agreement(scan, target_, motion, 2 * tolerance_, tolerance_);
         return {motion, static_cast<double>(on.close) / static_cast<double>(scan.samples().size())};
     }
 
@@ -184,7 +191,7 @@ private:
     const ViewSurface& target_;
     const ReducedView& reduced_scan_;
     const ReducedView& reduced_target_;
-    double spacing_;
+    double tolerance_;  ///< to the plane of the nearest sample
     const Execution& execution_;
 };
 
@@ -246,12 +253,13 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     const double spacing = result.spacing = std::max(surface.spacing(), samples.spacing);
     const double resolution = result.resolution = params.resolution.value_or(
         std::max(spacings_per_voxel * spacing, extent_of(scan.points).radius / voxels_per_size));
+    result.tolerance = std::max(on_target_spacings * spacing, on_target_resolutions * resolution);
     execution.progress(0.1);
 
     const ReducedView reduced_scan = reduced_surface(scan.points, scan.to_scanner, resolution),
                       reduced_target = reduced_surface(samples.points, samples.normals, resolution);
     const ViewSurface target_surface(samples.points, samples.normals, spacing);
-    const Fitting fitting(surface, target_surface, reduced_scan, reduced_target, spacing, execution);
+    const Fitting fitting(surface, target_surface, reduced_scan, reduced_target, result.tolerance, execution);
     const auto difference = [&](const RigidMotion& one, const RigidMotion& other) {
         return displacement(one, other, reduced_scan.extent.centre, reduced_scan.extent.radius);
     };
@@ -270,13 +278,19 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     sort_by_fit(poses);
 
     const PrincipalFrame frame = principal_frame(samples.points);
-    starts.clear();
-    for (const Eigen::Matrix3d& rotation : probe_rotations()) {
-        const Eigen::Matrix3d turn = frame.axes * rotation * frame.axes.transpose();
-        starts.push_back(poses[0].motion.then({turn, frame.centre - turn * frame.centre}));
+    const std::vector<Eigen::Matrix3d> rotations = probe_rotations();
+    for (int round = 0; round < most_probe_rounds; ++round) {
+        const Pose best = poses[0];
+        starts.clear();
+        for (const Eigen::Matrix3d& rotation : rotations) {
+            const Eigen::Matrix3d turn = frame.axes * rotation * frame.axes.transpose();
+            starts.push_back(best.motion.then({turn, frame.centre - turn * frame.centre}));
+        }
+        const std::vector<Pose> probes = fitting.roughly(starts);
+        poses.insert(poses.end(), probes.begin(), probes.end());
+        sort_by_fit(poses);
+        if (difference(poses[0].motion, best.motion) < same_pose * resolution) break;
     }
-    const std::vector<Pose> probes = fitting.roughly(starts);
-    poses.insert(poses.end(), probes.begin(), probes.end());
     execution.progress(0.7);
     fitting.finish(poses);
     sort_by_fit(poses);
@@ -290,7 +304,9 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
             }))
             chosen.push_back(pose);
     const double best = chosen[0].fit;
-    const auto is_equal = [&](const Pose& pose) { return pose.fit >= equal_fit * best; };
+    const auto is_equal = [&](const Pose& pose) {
+        return pose.fit >= equal_fit * best || 1 - pose.fit < equal_rest * (1 - best);
+    };
     bool is_chosen_by_start = false;
     if (scan.start) {
         std::ranges::stable_sort(chosen, {}, [&](const Pose& pose) {
@@ -315,7 +331,7 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
         result.refusal = TargetRefusal::no_fit;
     else if (result.slide < least_slide)
         result.refusal = TargetRefusal::slides;
-    else if (result.front > largest_front)
+    else if (result.front > largest_in_front)
         result.refusal = TargetRefusal::contradicts;
     else if (result.rivals > 0 && !is_chosen_by_start)
         result.refusal = TargetRefusal::ambiguous;

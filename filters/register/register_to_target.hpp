@@ -50,7 +50,7 @@ struct RegisterToTargetResult {
     TargetRefusal refusal = TargetRefusal::no_fit;
     double fit = 0;  ///< share of the scan's points that lie on the model
     double rival = 0;  ///< the largest share of another pose
-    std::size_t rivals = 0;  ///< number of other poses with at least 0.98 of `fit`
+    std::size_t rivals = 0;  ///< number of other poses that fit about equally well
     RigidMotion rival_pose;
     double slide = 0;  ///< see PairMeasures::slide
     /// Of scans from one side: number of the target's points in front of the scan, as a share of these and of the ones
@@ -58,6 +58,7 @@ struct RegisterToTargetResult {
     double front = 0;
     double spacing = 0;  ///< the larger one of the scan's and the target's
     double resolution = 0;
+    double tolerance = 0;  ///< points up to so far from the model's planes lie on it
 
     /// How much better the best pose is than any other.
     double confidence() const { return fit > 0 ? 1 - rival / fit : 0; }
