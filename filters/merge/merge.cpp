@@ -57,6 +57,12 @@ void require_sound(Inputs inputs, Numbers numbers, const MergeParams& params) {
     const double within = params.within.value();
     if (!(within >= 0) || !std::isfinite(within))
         throw Error("the distance `within` is {} u; it must be 0 or more", within);
+    if (const std::optional<Length>& given = params.fuse) {
+        const double value = given->in() == Length::In::spacing ? given->amount() : given->value();
+        if (!(value >= 0) || !std::isfinite(value))
+            throw Error("the distance `fuse` is {}; it must be 0 or more", given->text())
+                .hint("`2 spacing` suits views that lie a fraction of a spacing apart; `none` moves no point");
+    }
     if (const std::optional<Length>& given = params.default_uncertainty)
         if (const double value = given->value(); !(value >= 0) || !std::isfinite(value))
             throw Error("default-uncertainty is {} u; it must be 0 or more", value)
@@ -213,18 +219,22 @@ MergeResult merge(Inputs given, const MergeParams& params, Context& context) {
 
     PointCloud all = placed_points(inputs, params.poses);
     all.columns = merging::merged_columns(inputs, params.poses, numbers, context);
-    const std::span<const u32> source = all.columns.find("source")->values<u32>();
-    if (std::string doubt = merging::frames_doubt(all.positions.span(), source, context); !doubt.empty())
+    if (std::string doubt =
+            merging::frames_doubt(all.positions.span(), all.columns.find("source")->values<u32>(), context);
+        !doubt.empty())
         context.doubt(doubt + (params.poses.empty() ? "; give the poses of the views, or align the files first"
                                                     : "; check the poses and their unit"));
 
     MergeResult result;
+    if (params.fuse) result.fused = merging::fuse_points(all, inputs, params.poses, numbers, *params.fuse, context);
+    const std::span<const u32> source = all.columns.find("source")->values<u32>();
     result.kept = merging::without_overlap(all.positions.span(), source, preference, params.within.value(), context);
     result.dropped = all.size() - result.kept.size();
     result.points = result.dropped == 0 ? std::move(all) : gather(all, result.kept);
 
     context.metric("points", static_cast<double>(result.points.size()));
     context.metric("dropped", static_cast<double>(result.dropped));
+    if (params.fuse) context.metric("fused", static_cast<double>(result.fused));
     context.progress(1);
     return result;
 }

@@ -2,8 +2,9 @@
 #pragma once
 /// Merges several clouds of one object: each is moved by its pose, and points are dropped where clouds overlap.
 ///
-/// A scanner set up at ten positions gives ten clouds, often in ten coordinate systems. The poses must be accurate,
-/// because points are never averaged and clouds are never moved against each other.
+/// A scanner set up at ten positions gives ten clouds, often in ten coordinate systems. Poses that are off by a
+/// fraction of the spacing leave several layers of one surface; `fuse` makes them one. Larger errors stay: clouds are
+/// never registered here.
 
 #include <memory>
 #include <optional>
@@ -23,6 +24,9 @@ struct MergeParams {
     /// Points of different inputs within this distance of each other overlap, and only one of them is kept; 0 keeps
     /// all.
     Length within;
+    /// Clouds whose surfaces are at most this far apart become one layer (see fuse.hpp); 0 or more, in the unit of the
+    /// clouds or in spacings (see fuse()). If absent, no point is moved.
+    std::optional<Length> fuse;
     /// Uncertainty of points that have NaN in the column `uncertainty`, and of all points of an input without this
     /// column; 0 or more.
     std::optional<Length> default_uncertainty;
@@ -40,9 +44,15 @@ struct MergeResult {
     Array<u32> kept;
     /// kept + dropped = points of all inputs.
     std::size_t dropped = 0;
+    /// Points of all inputs that fusing moved.
+    std::size_t fused = 0;
 };
 
 /// The points of all inputs, in input order, without the dropped ones.
+///
+/// Fusing: see fuse.hpp, and fuse_points() in merge_steps.hpp for normals and directions. It comes before dropping, and
+/// moves points that are dropped then, too. Columns stay as they are, also `normal` and `uncertainty`; the column
+/// `moved` is added. A cloud alone gets a column of zeros.
 ///
 /// Dropping: points are visited in the order of (preference, input, row). With lower_uncertainty, the preference is the
 /// value in the column `uncertainty`, smaller values first. A point is dropped if a point of another input is at most
@@ -75,16 +85,17 @@ struct MergeResult {
 /// Throws Error for
 ///  - no inputs, an input without points, a NaN or infinite coordinate, more than 2^32 - 1 points;
 ///  - different units (also known and unknown), a pose in a known unit for clouds of an unknown unit;
-///  - a negative or infinite `within` or default uncertainty;
+///  - a negative or infinite `within`, `fuse` or default uncertainty;
 ///  - poses or numbers that are not one per input, numbers that do not ascend;
 ///  - moved points whose box is longer than 1e9 u;
 ///  - with lower_uncertainty: an input without a column `uncertainty` of one component, or with a NaN or a negative
 ///    number in it. A default replaces missing columns and NaN before this check.
 ///
-/// Deterministic: one thread does the work, so the bytes are the same for any number of threads. Cost: O(n) time while
+/// Deterministic: the bytes are the same for any number of threads; only fusing uses several. Cost: O(n) time while
 /// `within` is a few spacings. With a larger `within`, each point along the border of an overlap takes (within /
 /// spacing)² time. Memory: beside the result about its size once more, and about 50 bytes per point if `within` > 0.
-/// Metrics: `points`, `dropped`. Doubt: inputs whose surfaces cross others where they meet, see frames_doubt().
+/// Metrics: `points`, `dropped`, with `fuse` also `fused`. Doubt: inputs whose surfaces cross others where they meet,
+/// see frames_doubt().
 MergeResult merge(std::span<const std::shared_ptr<const PointCloud>> inputs, const MergeParams& params,
                   Context& context);
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The larger steps of merge(): the columns of the result, the choice of the points that are kept where clouds overlap,
-/// and the check that the clouds lie in one frame. The rules are in merge.hpp.
+/// The larger steps of merge(): the columns of the result, the fusing of clouds that lie a little apart, the choice of
+/// the points that are kept where clouds overlap, and the check that the clouds lie in one frame. The rules are in
+/// merge.hpp.
 
 #include <memory>
 #include <span>
 #include <string>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/filter/context.hpp"
 
@@ -28,6 +30,18 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
 /// by cloud. `preference`: empty, or a number for each row; smaller is better.
 Array<u32> without_overlap(std::span<const Vec3> positions, std::span<const u32> source,
                            std::span<const double> preference, double within, Context& context);
+
+/// Moves the points of registered clouds onto one layer where they overlap (see fuse.hpp), and adds the column `moved`:
+/// float32, a length, the distance that a point moved. An older column of that name is replaced, with a warning.
+/// Returns the number of points that moved.
+///
+/// Normals are the column `normal` if all clouds have it, with three numbers; otherwise they are estimated and turned
+/// to the scanner. Its direction is the column `approach`; where that is missing or not finite, +z of the cloud's own
+/// frame, with a warning if it decides the side of normals. Without poses this is +z of the common frame, which does
+/// not weigh the points. `all`: the clouds, end to end; `numbers`: as above, one per cloud.
+std::size_t fuse_points(PointCloud& all, std::span<const std::shared_ptr<const PointCloud>> clouds,
+                        std::span<const RigidTransform> poses, std::span<const u32> numbers, const Length& length,
+                        Context& context);
 
 /// Why clouds probably do not lie in one frame, with the worst pairs; empty without such a reason. Arguments as above.
 ///

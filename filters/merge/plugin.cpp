@@ -15,12 +15,12 @@ struct PosedMergeParams : MergeParams {
 
 SCANMILL_FILTER() {
     using P = PosedMergeParams;
-    return Declare<P>("merge", 4)
+    return Declare<P>("merge", 5)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
-        .source("pose files: Turk and Levoy 1994")
+        .source("pose files: Turk and Levoy 1994; weights of `fuse`: the same, and Curless and Levoy 1996")
         .ties("If points overlap and have equal preference, the point of the earlier input is kept.")
         .not_finite("Refused; the message gives the input, their number and the first one.")
-        .adds({"source", "uncertainty"})
+        .adds({"source", "uncertainty", "moved"})
         .in<PointCloud>("points", "At least one cloud; all have finite coordinates and the same unit.", list)
         .in<Transforms>("transform", "The motion of each input, in place of a file of `poses`.", optional, by_name)
         .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
@@ -33,12 +33,17 @@ SCANMILL_FILTER() {
                 "Which of two points is kept where inputs overlap.")
         .param("within", &P::within, "Points of different inputs within this distance overlap; 0 keeps all.",
                at_least(0))
+        .param("fuse", &P::fuse,
+               "Views whose surfaces lie at most this far apart become one layer, before points are dropped; 2 spacing "
+               "suits registered views. `spacing` is here the median of the views' spacings.",
+               word("none"), at_least(0), takes_spacings)
         .param("default-uncertainty", &P::default_uncertainty,
                "Uncertainty of points whose input lacks the column `uncertainty`, and of points with NaN in it.",
                word("none"), at_least(0))
         .metric("points", Unit::count, "Points that were kept.")
         .metric("dropped", Unit::count, "Points that were dropped because a point of another input overlaps them.",
                 headline)
+        .metric("fused", Unit::count, "Points that `fuse` moved; without `fuse` there is no such metric.")
         .run([](const Inputs& inputs, P params, Context& context) {
             auto clouds = inputs.list<PointCloud>("points");
             const auto* transforms = inputs.find<Transforms>("transform");
