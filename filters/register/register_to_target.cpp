@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -27,6 +28,8 @@ constexpr std::size_t normal_neighbours = 24, most_samples = 4000, few_samples =
 constexpr double settled = 0.01;  ///< in spacings
 /// The share of few samples has a standard deviation of 0.01; poses below this share of the best fit cannot be equal.
 constexpr double worth_finishing = 0.9;
+/// One equal pose is enough for a refusal.
+constexpr std::size_t most_finished = 10;
 /// A point lies on the target within this distance from the plane of the nearest sample, which is at most twice as far.
 /// Real parts deviate from their models, so dense scans are measured by the resolution.
 constexpr double on_target_spacings = 2, on_target_resolutions = 0.2;
@@ -53,6 +56,7 @@ constexpr double clearly_farther = 5;
 constexpr int symmetries[] = {3, 5, 6, 7, 8};
 /// A turned pose that fits better is turned again, so that turns about two axes are found.
 constexpr int most_probe_rounds = 4;
+constexpr double clearly_better = 1.02;
 /// Refining a pose with reduced points is cheap, so all that the descriptors propose are refined.
 constexpr std::size_t all_seeds = 300, all_correspondences = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t most_target_samples = 2'000'000;
@@ -132,11 +136,14 @@ double share_in_front(const ViewSurface& scan, const Vec3& to_scanner, const Red
 /// Fits poses of a scan on a target: many with few samples, then the good ones with all.
 class Fitting {
 public:
-    Fitting(const ViewSurface& scan, const ViewSurface& target, const ReducedView& reduced_scan,
-            const ReducedView& reduced_target, double tolerance, const Execution& execution)
+    /// `rough_target` has samples about the tolerance apart.
+    Fitting(const ViewSurface& scan, const ViewSurface& target, const ViewSurface& rough_target,
+            const ReducedView& reduced_scan, const ReducedView& reduced_target, double tolerance,
+            const Execution& execution)
         : scan_(scan),
           few_(scan.with_samples(few_samples)),
           target_(target),
+          rough_target_(rough_target),
           reduced_scan_(reduced_scan),
           reduced_target_(reduced_target),
           tolerance_(tolerance),
@@ -150,19 +157,19 @@ public:
         in_parallel(poses, [&](std::size_t i) -> Pose {
             const RigidMotion coarse = refined(reduced_scan_, reduced_target_, starts[i]);
             if (measured(reduced_scan_, reduced_target_, coarse).overlap < least_coarse_overlap) return {coarse, 0};
-            return fitted(few_, coarse, stages);
+            return fitted(few_, rough_target_, coarse, stages);
         });
         return poses;
     }
 
-    /// Fits the poses whose fit is near the best one with all samples; the others keep what they have.
+    /// Fits the first poses with all samples, if their fit is near the best one; the others keep what they have.
     void finish(std::vector<Pose>& poses) const {
         double best = 0;
         for (const Pose& pose : poses) best = std::max(best, pose.fit);
         const RelaxationStage stages[] = {{1.5 * tolerance_, 12}};
         in_parallel(poses, [&](std::size_t i) {
-            return poses[i].fit > 0 && poses[i].fit >= worth_finishing * best
-                       ? fitted(scan_, poses[i].motion, stages)
+            return i < most_finished && poses[i].fit > 0 && poses[i].fit >= worth_finishing * best
+                       ? fitted(scan_, target_, poses[i].motion, stages)
                        : poses[i];
         });
     }
@@ -176,19 +183,21 @@ private:
         });
     }
 
-    Pose fitted(const ViewSurface& scan, const RigidMotion& start, std::span<const RelaxationStage> stages) const {
-        const ViewSurface* const surfaces[] = {&target_, &scan};
+    Pose fitted(const ViewSurface& scan, const ViewSurface& target, const RigidMotion& start,
+                std::span<const RelaxationStage> stages) const {
+        const ViewSurface* const surfaces[] = {&target, &scan};
         const ViewPair pairs[] = {{0, 1}};
         const Execution one_thread;
         const RigidMotion motion =
             relaxed(surfaces, {RigidMotion(), start}, pairs, stages, settled * scan.spacing(), one_thread).poses[1];
-        const Agreement on = agreement(scan, target_, motion, 2 * tolerance_, tolerance_);
+        const Agreement on = agreement(scan, target, motion, 2 * tolerance_, tolerance_);
         return {motion, static_cast<double>(on.close) / static_cast<double>(scan.samples().size())};
     }
 
     const ViewSurface& scan_;
     ViewSurface few_;
     const ViewSurface& target_;
+    const ViewSurface& rough_target_;
     const ReducedView& reduced_scan_;
     const ReducedView& reduced_target_;
     double tolerance_;  ///< to the plane of the nearest sample
@@ -213,20 +222,30 @@ TargetSamples samples_of(const TriangleMesh& mesh, double spacing) {
     for (const Triangle& t : mesh.triangles) area += area_vector(mesh.positions, t).norm() / 2;
     spacing = std::max(spacing, std::sqrt(area / static_cast<double>(most_target_samples)));
     TargetSamples samples{{}, {}, spacing};
+    const double longest_edge = 1.5 * spacing;  // then the centroids are about `spacing` apart
+    std::vector<std::array<Vec3, 3>> pieces;
     for (const Triangle& t : mesh.triangles) {
         const Vec3 normal = area_vector(mesh.positions, t);
         if (!(normal.norm() > 0)) continue;
-        const Vec3 &a = mesh.positions[t[0]], b = mesh.positions[t[1]] - a, c = mesh.positions[t[2]] - a;
-        const double longest = std::max({b.norm(), c.norm(), (c - b).norm()});
-        const double parts = std::max(1.0, std::ceil(longest / spacing));
-        // The centroids of parts² equal triangles: those with the tip up, and those between them.
-        for (double i = 0; i < parts; ++i)
-            for (double j = 0; i + j < parts; ++j)
-                for (const double offset : {1.0 / 3, 2.0 / 3}) {
-                    if (offset > 0.5 && i + j + 1 >= parts) continue;
-                    samples.points.push_back(a + (i + offset) / parts * b + (j + offset) / parts * c);
-                    samples.normals.push_back(normal.normalized());
-                }
+        pieces.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+        while (!pieces.empty()) {
+            const std::array<Vec3, 3> piece = pieces.back();
+            pieces.pop_back();
+            int longest = 0;
+            double squared = -1;
+            for (int i = 0; i < 3; ++i)
+                if (const double edge = (piece[(i + 1) % 3] - piece[i]).squaredNorm(); edge > squared)
+                    squared = edge, longest = i;
+            const Vec3 &from = piece[longest], &to = piece[(longest + 1) % 3], &apex = piece[(longest + 2) % 3];
+            if (squared > longest_edge * longest_edge) {
+                const Vec3 middle = (from + to) / 2;
+                pieces.push_back({middle, to, apex});
+                pieces.push_back({from, middle, apex});
+            } else {
+                samples.points.push_back((from + to + apex) / 3);
+                samples.normals.push_back(normal.normalized());
+            }
+        }
     }
     return samples;
 }
@@ -259,7 +278,9 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     const ReducedView reduced_scan = reduced_surface(scan.points, scan.to_scanner, resolution),
                       reduced_target = reduced_surface(samples.points, samples.normals, resolution);
     const ViewSurface target_surface(samples.points, samples.normals, spacing);
-    const Fitting fitting(surface, target_surface, reduced_scan, reduced_target, result.tolerance, execution);
+    const TargetSamples rough = target(result.tolerance);
+    const ViewSurface rough_surface(rough.points, rough.normals, rough.spacing);
+    const Fitting fitting(surface, target_surface, rough_surface, reduced_scan, reduced_target, result.tolerance, execution);
     const auto difference = [&](const RigidMotion& one, const RigidMotion& other) {
         return displacement(one, other, reduced_scan.extent.centre, reduced_scan.extent.radius);
     };
@@ -289,12 +310,9 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
         const std::vector<Pose> probes = fitting.roughly(starts);
         poses.insert(poses.end(), probes.begin(), probes.end());
         sort_by_fit(poses);
-        if (difference(poses[0].motion, best.motion) < same_pose * resolution) break;
+        if (poses[0].fit < clearly_better * best.fit) break;
     }
     execution.progress(0.7);
-    fitting.finish(poses);
-    sort_by_fit(poses);
-    execution.progress(0.9);
 
     // Different poses, the best first.
     std::vector<Pose> chosen;
@@ -303,6 +321,13 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
                 return difference(pose.motion, better.motion) > same_pose * resolution;
             }))
             chosen.push_back(pose);
+    if (scan.start)
+        std::stable_sort(chosen.begin() + 1, chosen.end(), [&](const Pose& a, const Pose& b) {
+            return difference(a.motion, *scan.start) < difference(b.motion, *scan.start);
+        });
+    fitting.finish(chosen);
+    sort_by_fit(chosen);
+    execution.progress(0.9);
     const double best = chosen[0].fit;
     const auto is_equal = [&](const Pose& pose) {
         return pose.fit >= equal_fit * best || 1 - pose.fit < equal_rest * (1 - best);

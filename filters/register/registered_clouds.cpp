@@ -289,19 +289,24 @@ Transforms placed_on(const SamplesOf& samples, const Frame& target, Views scans,
     if (frame.unit != target.unit)
         throw Error("'{}' is in {} and the target in {}", names[0], symbol(frame.unit), symbol(target.unit))
             .hint("declare the units at the workflow's inputs, or convert the files first");
-    if (params.poses || params.start || params.as_is)
-        throw Error("`poses`, `start` and `as-is` are for views without a target")
-            .hint("`icp` refines a pose on a target");
+    if (params.poses || params.as_is)
+        throw Error("`poses` and `as-is` are for views without a target")
+            .hint("`start` takes a file with a pose to begin with");
     const Array<Vec3> to_scanner = directions_of(*scans[0], fmt::format("'{}'", names[0]), context);
-    const RegisterToTargetResult found = register_to_target({names[0], scans[0]->positions.span(), to_scanner}, samples,
-                                                            options_of(params), context);
+    ScanToPlace scan{names[0], scans[0]->positions.span(), to_scanner};
+    if (params.start) {
+        const auto poses = merging::poses_of(frames_of(scans), poses_in(*params.start, context), context);
+        if (poses[0]) scan.start = local(*poses[0], frame.origin, target.origin, frame.unit);
+    }
+    const RegisterToTargetResult found = register_to_target(scan, samples, options_of(params), context);
     const std::string numbers = fmt::format(
         "{:.1f} % of the points fit, {:.1f} % in the next best pose, {:.1f} % of the target in front, slide {:.4f}",
         100 * found.fit, 100 * found.rival, 100 * found.front, found.slide);
     if (found.refusal != TargetRefusal::none)
         throw Error("'{}' cannot be placed surely on the target ({}): {}", names[0], name_of(found.refusal), numbers)
             .hint(found.refusal == TargetRefusal::ambiguous
-                      ? "the part is symmetric: `align` takes pairs of points that decide between its poses"
+                      ? "the part looks alike in several poses: `start` takes a file with a rough pose that decides, "
+                        "`align` pairs of points"
                       : "scan more of the part, or start `icp` from a pose near the right one");
     RigidTransform pose = world(found.pose, frame.origin, target.origin);
     pose.unit = frame.unit;
