@@ -65,8 +65,8 @@ hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmil
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml and bernardini-1997-raw.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
-# Further filters of surfaces.py, woo_dey_table_1.py and woo_dey_updates.py.
-surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson scanmill-mesh-update
+# Further filters of surfaces.py, woo_dey_table_1.py, woo_dey_updates.py and registration.py.
+surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson scanmill-mesh-update scanmill-register
 
 bench-quality: deps ## compare our results with trimesh, Open3D, four papers and other decimations: LARGE=1
 	tools/deps.sh bench
@@ -85,6 +85,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/sharp_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/registration.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill
 	$(if $(LARGE),$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill)
