@@ -32,14 +32,15 @@ SCANMILL_FILTER() {
             "Edge of the voxels to which views are reduced; `auto` is 4 spacings, or a tenth of the size of a view if "
             "that is larger. Poses are refined with all points.",
             above(0), word("auto"))
-        .param("poses", &P::poses,
-               "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are, and nothing is "
-               "registered.",
-               word("none"))
+        .param(
+            "poses", &P::poses,
+            "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are, and nothing is "
+            "registered.",
+            word("none"))
         .param(
             "start", &P::start,
             "A Stanford .conf or a JSON file with poses to begin with; they are refined and tested, and a wrong one is "
-            "refused.",
+            "refused. With a target, the pose decides between others that fit equally well.",
             word("none"))
         .param("as-is", &P::as_is,
                "Whether views that are already in one frame are only tested; if nothing contradicts their poses, they "

@@ -35,8 +35,8 @@ ViewExtent extent_of(std::span<const Vec3> points);
 /// Pre: finite points, resolution > 0. Cost: about 30 ms for 40,000 points.
 ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, double resolution);
 
-/// Reduces a surface that no single scanner sees. `outside` has a unit vector from the surface outwards for all points, or
-/// one for each. Its lines of sight are empty.
+/// Reduces a surface that no single scanner sees. `outside` has a unit vector from the surface outwards for all points,
+/// or one for each. Its lines of sight are empty.
 ReducedView reduced_surface(std::span<const Vec3> points, std::span<const Vec3> outside, double resolution);
 
 }  // namespace scanmill::registration

@@ -37,15 +37,15 @@ constexpr double on_target_spacings = 2, on_target_resolutions = 0.2;
 constexpr double least_coarse_overlap = 0.6;
 /// The least share of the scan's points on the target.
 constexpr double least_fit = 0.8;
-/// Largest share of the target's points in front of the scan. Right poses have up to 0.036, wrong ones 0.08 to 0.13 or a
-/// rival.
+/// Largest share of the target's points in front of the scan. Right poses have up to 0.036, wrong ones 0.08 to 0.13 or
+/// a rival.
 constexpr double largest_in_front = 0.08;
 /// The mean of the directions to the scanner is at least this long for a scan from one side, whose lines of sight are
 /// tested with this reach, in multiples of the distance above.
 constexpr double least_one_sided = 0.8, sight_reach = 1.25;
-/// A rival is equal with this share of the best fit, because small notches change the fit by 0.02 to 0.06, and the share
-/// itself has a standard deviation of 0.002. It is equal, too, if it leaves less than this many times the points that
-/// the best pose leaves: then neither may be right.
+/// A rival is equal with this share of the best fit, because small notches change the fit by 0.02 to 0.06, and the
+/// share itself has a standard deviation of 0.002. It is equal, too, if it leaves less than this many times the points
+/// that the best pose leaves: then neither may be right.
 constexpr double equal_fit = 0.98, equal_rest = 2;
 /// Poses that displace the scan by less resolutions are the same.
 constexpr double same_pose = 2;
@@ -107,9 +107,7 @@ struct Pose {
 };
 
 /// Sorts by fit, the largest first; equal ones keep their order.
-void sort_by_fit(std::vector<Pose>& poses) {
-    std::ranges::stable_sort(poses, std::ranges::greater(), &Pose::fit);
-}
+void sort_by_fit(std::vector<Pose>& poses) { std::ranges::stable_sort(poses, std::ranges::greater(), &Pose::fit); }
 
 Vec3 mean_of(std::span<const Vec3> directions) {
     Vec3 sum = Vec3::Zero();
@@ -117,8 +115,8 @@ Vec3 mean_of(std::span<const Vec3> directions) {
     return sum / static_cast<double>(directions.size());
 }
 
-/// Number of the target's points in front of the scan, as a share of these and of the ones on it. The scanner would have
-/// hit them first.
+/// Number of the target's points in front of the scan, as a share of these and of the ones on it. The scanner would
+/// have hit them first.
 double share_in_front(const ViewSurface& scan, const Vec3& to_scanner, const ReducedView& target,
                       const RegisterToTargetResult& result) {
     const double reach = sight_reach * result.tolerance;
@@ -280,7 +278,8 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     const ViewSurface target_surface(samples.points, samples.normals, spacing);
     const TargetSamples rough = target(result.tolerance);
     const ViewSurface rough_surface(rough.points, rough.normals, rough.spacing);
-    const Fitting fitting(surface, target_surface, rough_surface, reduced_scan, reduced_target, result.tolerance, execution);
+    const Fitting fitting(surface, target_surface, rough_surface, reduced_scan, reduced_target, result.tolerance,
+                          execution);
     const auto difference = [&](const RigidMotion& one, const RigidMotion& other) {
         return displacement(one, other, reduced_scan.extent.centre, reduced_scan.extent.radius);
     };

@@ -16,8 +16,8 @@ struct TargetSamples {
     double spacing = 0;  ///< about the distance of a point from the nearest other one
 };
 
-/// Points of the mesh, about `spacing` apart, with the normals of their triangles: the centroids of the pieces after the
-/// longest edges were halved. Triangles without area have none. Pre: finite; spacing > 0.
+/// Points of the mesh, about `spacing` apart, with the normals of their triangles: the centroids of the pieces after
+/// the longest edges were halved. Triangles without area have none. Pre: finite; spacing > 0.
 TargetSamples samples_of(const TriangleMesh& mesh, double spacing);
 
 /// Points of the cloud, about `spacing` apart or as they are if that is farther, with the normals of the planes through

@@ -386,7 +386,8 @@ RegisterViewsResult as_they_are(std::span<const ViewToRegister> views, double sp
     result.kept_as_is = true;
     result.spacing = spacing, result.resolution = resolution;
     result.views.resize(views.size());
-    for (std::size_t row = 0; row < views.size(); ++row) result.views[row].pose = views[row].start.value_or(RigidMotion());
+    for (std::size_t row = 0; row < views.size(); ++row)
+        result.views[row].pose = views[row].start.value_or(RigidMotion());
     result.placed = views.size();
     return result;
 }
@@ -444,8 +445,8 @@ RegisterViewsResult register_views(std::span<const ViewToRegister> views, const 
     for_each_chunk(execution.threads(), used.size(), 1, [&](std::size_t i, std::size_t) {
         execution.check_cancelled();
         const Vec3 to_scanner = used[i]->to_scanner.normalized();
-        surfaces[i] = std::make_unique<ViewSurface>(used[i]->points, std::span(&to_scanner, 1), normal_neighbours,
-                                                    most_samples);
+        surfaces[i] =
+            std::make_unique<ViewSurface>(used[i]->points, std::span(&to_scanner, 1), normal_neighbours, most_samples);
         spacings[i] = surfaces[i]->spacing();
     });
     for (const u32 row : row_of_used) used_sizes.push_back(sizes[row]);

@@ -73,7 +73,8 @@ Vec3 mean_direction(const PointCloud& view) {
 Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Context& context) {
     for (const char* column : {"approach", "normal"})
         if (Array<Vec3> directions = unit_vectors(cloud, column); !directions.empty()) return directions;
-    context.warn(fmt::format("{} has no column `approach` or `normal`: the scanner is assumed on the side of +z", name));
+    context.warn(
+        fmt::format("{} has no column `approach` or `normal`: the scanner is assumed on the side of +z", name));
     return Array<Vec3>(1, Vec3::UnitZ());
 }
 
@@ -234,9 +235,8 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
                                        names[found.contradicting->first], names[found.contradicting->second])
                          : "overlapping pairs do not connect all views as they are; the views are registered anew");
     if (found.is_unconnected)
-        context.doubt(
-            fmt::format("the {} overlap too little to be tested or registered; they stay as they are",
-                        count_text(names.size(), "view", "views")));
+        context.doubt(fmt::format("the {} overlap too little to be tested or registered; they stay as they are",
+                                  count_text(names.size(), "view", "views")));
     refuse(found, names, params, context);
 
     const auto first =

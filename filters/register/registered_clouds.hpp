@@ -32,8 +32,8 @@ struct RegisterParams {
 ///
 /// Throws Error for no view, different units, the errors of register_views(), files whose poses do not match the views,
 /// and refused views, all of them with numbers, with OnRefusal::fail or if fewer than two views are placed. With
-/// OnRefusal::leave_out refused views are a doubt, as are views that stay as they are because they overlap too little to
-/// be tested or registered. Metrics: see plugin.cpp.
+/// OnRefusal::leave_out refused views are a doubt, as are views that stay as they are because they overlap too little
+/// to be tested or registered. Metrics: see plugin.cpp.
 Transforms registered_clouds(std::span<const std::shared_ptr<const PointCloud>> views, const RegisterParams& params,
                              Context& context);
 

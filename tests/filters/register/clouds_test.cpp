@@ -132,7 +132,8 @@ TEST(RegisterClouds, ViewsInOneFrame_AreKeptAsTheyAre_AndMovedOnesAreRegisteredA
 }
 
 /// A file of poses: the motions, moved by `off` along each axis; the last scan is refused if a reason is given.
-std::filesystem::path file_of(const Clouds& clouds, const Transforms& transforms, double off, std::string refused = {}) {
+std::filesystem::path file_of(const Clouds& clouds, const Transforms& transforms, double off,
+                              std::string refused = {}) {
     const auto file = std::filesystem::path(testing::TempDir()) / "register-poses.json";
     std::ofstream out(file);
     out.precision(17);
@@ -171,7 +172,8 @@ TEST(RegisterClouds, PosesOfAFile_AreTakenAsTheyAre) {
     ASSERT_EQ(found.transforms.motions.size(), 7u);
     EXPECT_EQ(found.transforms.motions[3].from, "view 4");
     EXPECT_EQ(found.transforms.motions[3].to, "view 1");
-    EXPECT_LT((found.transforms.motions[3].translation - poses.motions[3].translation - Vec3(0.5, 0.5, 0.5)).norm(), 1e-6);
+    EXPECT_LT((found.transforms.motions[3].translation - poses.motions[3].translation - Vec3(0.5, 0.5, 0.5)).norm(),
+              1e-6);
     ASSERT_EQ(found.transforms.refused.size(), 1u);
     EXPECT_EQ(found.transforms.refused[0].from, "view 8");
     EXPECT_EQ(found.transforms.refused[0].reason, "too dark");
@@ -235,9 +237,9 @@ TEST(RegisterToMesh, AScanFromAllSides_IsPlacedOnMeshAndPoints) {
     const auto largest_error = [&](const Transforms& found) {
         double largest = 0;
         for (std::size_t i = 0; i < scan.size(); i += 997)
-            largest = std::max(largest, (found.motions.at(0).apply(scan.positions[i]) -
-                                         motion.inverse().apply(scan.positions[i]))
-                                            .norm());
+            largest = std::max(
+                largest,
+                (found.motions.at(0).apply(scan.positions[i]) - motion.inverse().apply(scan.positions[i])).norm());
         return largest;
     };
     TriangleMesh mesh = lump();

@@ -100,8 +100,9 @@ RegisterToTargetResult placed(const Scan& scan, const TriangleMesh& model, unsig
     ExecutionOptions options;
     options.threads = threads;
     Execution execution(options);
-    return register_to_target({"scan", scan.points, scan.to_scanner, start},
-                              [&](double spacing) { return samples_of(model, spacing); }, {}, execution);
+    return register_to_target(
+        {"scan", scan.points, scan.to_scanner, start}, [&](double spacing) { return samples_of(model, spacing); }, {},
+        execution);
 }
 
 double error_of(const RegisterToTargetResult& result, const Scan& scan) {
@@ -129,15 +130,15 @@ TEST_P(SymmetricModel, IsRefused_FromAllSidesAndFromOne) {
     EXPECT_NE(side.refusal, TargetRefusal::none) << side.fit << " " << side.rival << " " << side.slide;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    RegisterToTarget, SymmetricModel,
-    testing::Values(Shape{"Box", [] { return box(120, 80, 40); }}, Shape{"SquareBox", [] { return box(80, 80, 40); }},
-                    Shape{"LOfEqualLegs", [] { return l_shape(100, 100); }},
-                    Shape{"SixSidedNut", [] { return prism({circle(60, 6)}, 0, 30); }},
-                    Shape{"FiveSidedPrism", [] { return prism({circle(60, 5)}, 0, 30); }},
-                    Shape{"Cylinder", [] { return prism({circle(40, 180)}, 0, 100); }},
-                    Shape{"Sphere", [] { return geodesic_sphere(50, 24); }}),
-    shape_name);
+INSTANTIATE_TEST_SUITE_P(RegisterToTarget, SymmetricModel,
+                         testing::Values(Shape{"Box", [] { return box(120, 80, 40); }},
+                                         Shape{"SquareBox", [] { return box(80, 80, 40); }},
+                                         Shape{"LOfEqualLegs", [] { return l_shape(100, 100); }},
+                                         Shape{"SixSidedNut", [] { return prism({circle(60, 6)}, 0, 30); }},
+                                         Shape{"FiveSidedPrism", [] { return prism({circle(60, 5)}, 0, 30); }},
+                                         Shape{"Cylinder", [] { return prism({circle(40, 180)}, 0, 100); }},
+                                         Shape{"Sphere", [] { return geodesic_sphere(50, 24); }}),
+                         shape_name);
 
 class PlainModel : public testing::TestWithParam<Shape> {};
 
@@ -145,7 +146,8 @@ TEST_P(PlainModel, IsPlacedFromAllSides) {
     const TriangleMesh model = GetParam().model();
     const Scan scan = scan_of(model, 1);
     const RegisterToTargetResult result = placed(scan, model);
-    EXPECT_EQ(result.refusal, TargetRefusal::none) << name_of(result.refusal) << " " << result.fit << " " << result.rival;
+    EXPECT_EQ(result.refusal, TargetRefusal::none)
+        << name_of(result.refusal) << " " << result.fit << " " << result.rival;
     EXPECT_LT(error_of(result, scan), 0.15);
 }
 

@@ -224,7 +224,8 @@ ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> to_
     const std::size_t count = std::min(most_samples, points.size());
     for (std::size_t i = 0; i < count; ++i) samples_.push_back(tree.index_of_row()[i * points.size() / count]);
     // Two spacings: a few points per cell.
-    grid_.emplace(points_, to_scanner.size() > 1 ? oblique : to_scanner[0], 2 * std::max(spacing_, least_edge(points_)));
+    grid_.emplace(points_, to_scanner.size() > 1 ? oblique : to_scanner[0],
+                  2 * std::max(spacing_, least_edge(points_)));
 }
 
 ViewSurface::ViewSurface(std::span<const Vec3> points, std::span<const Vec3> normals, double spacing)
