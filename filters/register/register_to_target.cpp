@@ -26,6 +26,7 @@ using namespace registration;
 constexpr double spacings_per_voxel = 4, voxels_per_size = 10.5;
 constexpr std::size_t normal_neighbours = 24, most_samples = 4000, few_samples = 800;
 constexpr double settled = 0.01;  ///< in spacings
+constexpr double least_product = 0.7;  ///< of the normals of a point and of the target
 /// The share of few samples has a standard deviation of 0.01; poses below this share of the best fit cannot be equal.
 constexpr double worth_finishing = 0.9;
 /// One equal pose is enough for a refusal.
@@ -170,6 +171,22 @@ public:
                        ? fitted(scan_, target_, poses[i].motion, stages)
                        : poses[i];
         });
+    }
+
+    /// The smallest eigenvalue of the planes under the points that lie on the target. Points off it do not count: they
+    /// may be the ones that show that the scan has slid.
+    double slide(const RigidMotion& motion) const {
+        std::vector<PlanePair> on;
+        for (const u32 sample : scan_.samples()) {
+            const Vec3 point = motion.apply(scan_.points()[sample]);
+            const u32 partner = target_.grid().nearest(point, target_.grid().edge(), 2 * tolerance_).row;
+            if (partner == ProjectedGrid::Nearest::none) continue;
+            const Vec3& normal = target_.normals()[partner];
+            const double residual = (point - target_.points()[partner]).dot(normal);
+            if (std::abs(residual) <= tolerance_ && motion.turned(scan_.normals()[sample]).dot(normal) > least_product)
+                on.push_back({point, normal, residual});
+        }
+        return std::max(0.0, plane_equations(on).eigenvalues()[0]);
     }
 
 private:
@@ -349,7 +366,7 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     }
     if (const Vec3 side = mean_of(scan.to_scanner); side.norm() >= least_one_sided)
         result.front = share_in_front(surface, side.normalized(), reduced_target, result);
-    result.slide = measured(reduced_scan, reduced_target, result.pose).slide;
+    result.slide = fitting.slide(result.pose);
     execution.progress(1);
     if (result.fit < std::max(least_fit, params.overlap))
         result.refusal = TargetRefusal::no_fit;
