@@ -45,6 +45,10 @@ SCANMILL_FILTER() {
         .param("as-is", &P::as_is,
                "Whether views that are already in one frame are only tested; if nothing contradicts their poses, they "
                "keep them.")
+        .param(
+            "whole-views", &P::whole_views,
+            "Whether each view shows the whole side of the object that faces its scanner. false: the scanner's field "
+            "cuts views off, and parts outside the convex outline of a view do not contradict it.")
         .param("seed-tries", &P::seed_tries, "Number of poses of a pair that are refined and tested.", at_least(1))
         .choice("on-refusal", &P::on_refusal,
                 {{"fail", P::OnRefusal::fail, "The step fails, and the message lists every refused view."},

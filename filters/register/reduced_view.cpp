@@ -82,10 +82,10 @@ ViewExtent extent_of(std::span<const Vec3> points) {
     return {centre, std::sqrt(squares / static_cast<double>(points.size()))};
 }
 
-ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, double resolution) {
+ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, double resolution, bool sees_all) {
     Array<Vec3> rays;
     for (const u32 row : thinned_rows(points, thinning * sight_edge * resolution)) rays.push_back(points[row]);
-    return reduced(points, {&to_scanner, 1}, resolution, SightLines(rays, to_scanner, resolution));
+    return reduced(points, {&to_scanner, 1}, resolution, SightLines(rays, to_scanner, resolution, sees_all));
 }
 
 ReducedView reduced_surface(std::span<const Vec3> points, std::span<const Vec3> outside, double resolution) {

@@ -31,9 +31,9 @@ struct ReducedView {
 /// Centroid and root mean square distance of the points from it.
 ViewExtent extent_of(std::span<const Vec3> points);
 
-/// Reduces a view. `to_scanner` is the unit direction from the view to its scanner.
+/// Reduces a view. `to_scanner` is the unit direction from the view to its scanner; `sees_all` as for SightLines.
 /// Pre: finite points, resolution > 0. Cost: about 30 ms for 40,000 points.
-ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, double resolution);
+ReducedView reduced_view(std::span<const Vec3> points, const Vec3& to_scanner, double resolution, bool sees_all = true);
 
 /// Reduces a surface that no single scanner sees. `outside` has a unit vector from the surface outwards for all points,
 /// or one for each. Its lines of sight are empty.

@@ -42,6 +42,8 @@ constexpr u32 last_rounds = 50;
 constexpr double settled = 0.01;  ///< in spacings
 /// In spacings, and in multiples of the noise of the noisiest view.
 constexpr double last_tolerance = 3, noise_multiple = 4;
+/// Views that the field cuts off do not contradict each other by missing points, so their surfaces must agree better.
+constexpr double cut_off_tolerance = 1;
 /// The least share of points on the other view's surface, among those near it. Right pairs with enough overlap have
 /// 0.90 and more; parts that are turned by their symmetry but for details have up to 0.80.
 constexpr double least_agreement = 0.87;
@@ -64,12 +66,15 @@ public:
           params_(params),
           execution_(execution),
           refusal_(views.size(), ViewRefusal::none) {
-        for (const auto& surface : surfaces) close_ = std::max(close_, noise_multiple * surface->noise());
+        fitting_ = params.whole_views ? close_ : cut_off_tolerance * spacing;
+        for (const auto& surface : surfaces)
+            for (double* distance : {&close_, &fitting_})
+                *distance = std::max(*distance, noise_multiple * surface->noise());
         reduced_.resize(views.size());
         for_each_chunk(execution.threads(), views.size(), 1, [&](std::size_t i, std::size_t) {
             execution.check_cancelled();
             reduced_[i] = std::make_unique<ReducedView>(
-                reduced_view(views[i]->points, views[i]->to_scanner.normalized(), resolution));
+                reduced_view(views[i]->points, views[i]->to_scanner.normalized(), resolution, params.whole_views));
             if (reduced_[i]->points.size() < least_reduced_points) refusal_[i] = ViewRefusal::small;
         });
     }
@@ -173,8 +178,8 @@ private:
 
     /// Whether most points that have a partner at the resolution also lie on the other view's surface.
     bool fits(u32 a, u32 b, const RigidMotion& motion) const {
-        const Agreement there = agreement(*surfaces_[a], *surfaces_[b], motion, resolution_, close_),
-                        back = agreement(*surfaces_[b], *surfaces_[a], motion.inverse(), resolution_, close_);
+        const Agreement there = agreement(*surfaces_[a], *surfaces_[b], motion, resolution_, fitting_),
+                        back = agreement(*surfaces_[b], *surfaces_[a], motion.inverse(), resolution_, fitting_);
         return static_cast<double>(there.close + back.close) >=
                least_agreement * static_cast<double>(there.points + back.points);
     }
@@ -349,6 +354,7 @@ private:
     std::span<const std::unique_ptr<ViewSurface>> surfaces_;
     double resolution_;
     double close_;  ///< points of right poses are usually not farther from the other view's planes
+    double fitting_ = 0;  ///< the same for the test of a pose
     double settled_;  ///< a smaller motion is none
     const RegisterViewsParams& params_;
     Execution& execution_;

@@ -23,6 +23,9 @@ struct RegisterViewsParams {
     std::optional<double> resolution;
     /// Number of hypotheses that are refined per pair, at least 1.
     u32 seed_tries = 20;
+    /// Whether every view shows the whole side of the object that faces its scanner. If not, parts outside the convex
+    /// outline of a view are no evidence against a pose.
+    bool whole_views = true;
     /// The poses of the views (`start`, or the identity) are tested as they are. If no lines of sight contradict them
     /// and overlapping pairs connect all views, they are kept bit for bit; otherwise the views are registered without
     /// them. If that refuses a view, and neither a line of sight nor an accepted pair contradicts the poses, they are

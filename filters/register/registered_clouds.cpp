@@ -178,8 +178,8 @@ void refuse(const RegisterViewsResult& found, std::span<const std::string> names
     if (params.on_refusal == RegisterParams::OnRefusal::fail || found.placed < 2)
         throw Error("{}", sentence)
             .hint(
-                "add views that overlap with them, lower `overlap`, give poses with `start`, or choose 'on-refusal: "
-                "leave-out'");
+                "add views that overlap with them, lower `overlap`, give poses with `start`, choose 'on-refusal: "
+                "leave-out', or 'whole-views: false' if the scanner's field cuts views off");
     context.doubt(sentence);
 }
 
@@ -189,6 +189,7 @@ RegisterViewsParams options_of(const RegisterParams& params) {
     if (params.resolution) options.resolution = params.resolution->value();
     options.seed_tries = params.seed_tries;
     options.as_is = params.as_is;
+    options.whole_views = params.whole_views;
     return options;
 }
 

@@ -22,6 +22,7 @@ struct RegisterParams {
     std::optional<std::filesystem::path> poses;  ///< file of poses that are taken as they are, see read_poses()
     std::optional<std::filesystem::path> start;  ///< file of poses to begin with
     bool as_is = false;
+    bool whole_views = true;
     u32 seed_tries = 20;
     OnRefusal on_refusal = OnRefusal::fail;
 };

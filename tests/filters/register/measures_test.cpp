@@ -58,6 +58,19 @@ TEST(RegisterMeasures, ACopyMovedAside_IsAllMissing) {
     EXPECT_EQ(m.missing, 1);
 }
 
+TEST(RegisterMeasures, OfViewsThatTheFieldCutsOff_OnlyPlacesWithinTheOutlineAreMissing) {
+    const auto missing = [](const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
+        return measured(reduced_view(first, Vec3::UnitZ(), 2, false), reduced_view(second, Vec3::UnitZ(), 2, false), {})
+            .missing;
+    };
+    // Points of the first view outside the second one: the second scanner did not look there.
+    EXPECT_EQ(missing(shifted(square(), Vec3(20, 0, 0)), square()), 0.0);
+    // A gap of 21 × 21 points: the scanner looked through it, and the first view has points in it.
+    std::vector<Vec3> with_gap = square();
+    std::erase_if(with_gap, [](const Vec3& p) { return std::abs(p.x() - 20) <= 10 && std::abs(p.y() - 20) <= 10; });
+    EXPECT_GT(missing(square(), with_gap), 0.05);
+}
+
 TEST(RegisterScale, UnitsAreNamedWithinATwentyPercent) {
     EXPECT_EQ(registration::unit_ratio(25.4, 1)->units, "millimetres and inches");
     EXPECT_EQ(registration::unit_ratio(1, 1100)->units, "millimetres and metres");

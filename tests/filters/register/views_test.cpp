@@ -110,6 +110,24 @@ TEST(RegisterViews, ViewsAsTheyAreWithoutOverlap_AreKept_UnlessAPairFitsElsewher
     EXPECT_FALSE(found.views.back().pose);
 }
 
+TEST(RegisterViews, StripsOfALandscape_ArePlacedIfTheyAreNoWholeViews) {
+    const auto height = [](double x, double y) {
+        return 6 * std::sin(x / 9) * std::cos(y / 7 + x / 31) + 4 * std::sin(x / 23 + y / 11) +
+               3 * std::sin(x * y / 700);
+    };
+    std::vector<View> strips;
+    for (int i = 0; i < 4; ++i)
+        strips.push_back(height_view("strip " + std::to_string(i + 1), 60 * i, 60 * i + 120, 0, 90, height, 0.2,
+                                     static_cast<u64>(i) + 1));
+    const std::vector<View> views = in_random_frames(strips, 1, 100);
+    EXPECT_LT(registered(views).placed, 4u);
+    RegisterViewsParams params;
+    params.whole_views = false;
+    const RegisterViewsResult found = registered(views, params);
+    EXPECT_EQ(found.placed, 4u);
+    for (const double error : errors_of(found, views)) EXPECT_LT(std::abs(error), 0.2);
+}
+
 TEST(RegisterViews, OneView_StaysWhereItIs) {
     const RegisterViewsResult result = registered({sides()[0]});
     EXPECT_EQ(result.placed, 1u);

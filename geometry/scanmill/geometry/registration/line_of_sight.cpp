@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/registration/line_of_sight.hpp"
 
+#include <algorithm>
+
 namespace scanmill {
 
 namespace {
@@ -13,11 +15,49 @@ double squared_across(const ProjectedGrid::Ray& a, const ProjectedGrid::Ray& b) 
     return x * x + y * y;
 }
 
+bool is_left(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& point) {
+    const Eigen::Vector2d along = to - from, there = point - from;
+    return along.x() * there.y() - along.y() * there.x() > 0;
+}
+
+/// Andrew's chains: the lower one from left to right, then the upper one back.
+std::vector<Eigen::Vector2d> convex_outline(const ProjectedGrid& grid, std::span<const Vec3> points) {
+    std::vector<Eigen::Vector2d> sorted;
+    for (const Vec3& p : points) {
+        const ProjectedGrid::Ray ray = grid.ray_of(p);
+        sorted.emplace_back(ray.x, ray.y);
+    }
+    const auto by_x = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+    };
+    std::ranges::sort(sorted, by_x);
+    std::vector<Eigen::Vector2d> outline;
+    for (int chain = 0; chain < 2; ++chain) {
+        const std::size_t first = outline.size();
+        for (const Eigen::Vector2d& p : sorted) {
+            while (outline.size() >= first + 2 && !is_left(outline[outline.size() - 2], outline.back(), p))
+                outline.pop_back();
+            outline.push_back(p);
+        }
+        outline.pop_back();  // the first corner of the next chain
+        std::ranges::reverse(sorted);
+    }
+    return outline;
+}
+
 }  // namespace
 
-SightLines::SightLines(std::span<const Vec3> points, const Vec3& to_scanner, double reach)
+SightLines::SightLines(std::span<const Vec3> points, const Vec3& to_scanner, double reach, bool sees_all)
     : grid_(points, to_scanner, cell_edge * reach),
-      reach_(reach) {}
+      reach_(reach) {
+    if (!sees_all) outline_ = convex_outline(grid_, points);
+}
+
+bool SightLines::is_in_outline(const ProjectedGrid::Ray& at) const {
+    for (std::size_t i = 0; i < outline_.size(); ++i)
+        if (!is_left(outline_[i], outline_[(i + 1) % outline_.size()], {at.x, at.y})) return false;
+    return true;
+}
 
 SightLines::Place SightLines::place_of(const Vec3& position) const {
     const ProjectedGrid::Ray at = grid_.ray_of(position);
@@ -34,6 +74,7 @@ SightLines::Place SightLines::place_of(const Vec3& position) const {
 
 bool SightLines::is_empty_at(const Vec3& position) const {
     const ProjectedGrid::Ray at = grid_.ray_of(position);
+    if (!is_in_outline(at)) return false;
     return !grid_.any_within(
         at, reach_, [&](const ProjectedGrid::Ray& other) { return squared_across(at, other) <= reach_ * reach_; });
 }
