@@ -11,6 +11,7 @@
 #include "register/register_to_target.hpp"
 #include "register/register_views.hpp"
 #include "register/view_checks.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
@@ -183,6 +184,23 @@ void refuse(const RegisterViewsResult& found, std::span<const std::string> names
     context.doubt(sentence);
 }
 
+/// A doubt that names the pairs that no way over other pairs confirms. Where missing points do not contradict a pose,
+/// flat pieces of different faces can look alike.
+void doubt_unconfirmed(const RegisterViewsResult& found, std::span<const std::string> names, Context& context) {
+    std::vector<std::string> unconfirmed;
+    for (const RegisteredPair& pair : found.pairs) {
+        DisjointSets groups(names.size());
+        for (const RegisteredPair& other : found.pairs)
+            if (&other != &pair) groups.unite(other.from, other.to);
+        if (groups.find(pair.from) != groups.find(pair.to))
+            unconfirmed.push_back(fmt::format("'{}' with '{}'", names[pair.from], names[pair.to]));
+    }
+    if (!unconfirmed.empty())
+        context.doubt(fmt::format("{} of views {} confirmed by no other views: {}; look at them",
+                                  count_text(unconfirmed.size(), "pair", "pairs"),
+                                  by_count(unconfirmed.size(), "is", "are"), fmt::join(unconfirmed, ", ")));
+}
+
 RegisterViewsParams options_of(const RegisterParams& params) {
     RegisterViewsParams options;
     options.overlap = params.overlap.value();
@@ -239,6 +257,7 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
         context.doubt(fmt::format("the {} overlap too little to be tested or registered; they stay as they are",
                                   count_text(names.size(), "view", "views")));
     refuse(found, names, params, context);
+    if (!params.whole_views && !found.kept_as_is) doubt_unconfirmed(found, names, context);
 
     const auto first =
         std::ranges::find_if(found.views, [](const RegisteredView& view) { return view.pose.has_value(); });

@@ -292,6 +292,23 @@ TEST(RegisterClouds, WithoutAScannersSide_AreWarnedOf) {
     EXPECT_THAT(context.warnings(), Contains(HasSubstr("8 views are without a column `approach` or `normal`")));
 }
 
+TEST(RegisterClouds, OfViewsThatTheFieldCutsOff_PairsThatNoOtherViewsConfirm_AreDoubtful) {
+    RegisterParams params;
+    params.whole_views = false;
+    const Clouds all = clouds_of(in_random_frames(lump_views(), 1, 100));
+    EXPECT_THAT(run(all, params).doubts, testing::IsEmpty());
+    Clouds two = all;
+    const Transforms whole = run(all).transforms;
+    std::size_t other = 1;
+    while (other < 8 && !std::ranges::any_of(whole.edges, [&](const PoseEdge& edge) {
+        return edge.pose.from == "view 1" && edge.pose.to == all.views[other].name;
+    }))
+        ++other;
+    ASSERT_LT(other, 8u);
+    two.clouds = {all.clouds[0], all.clouds[other]};
+    EXPECT_THAT(run(two, params).doubts, Contains(HasSubstr("1 pair of views is confirmed by no other views: 'view 1'")));
+}
+
 TEST(RegisterClouds, OneViewStaysWhereItIs_WhateverItHas) {
     Clouds clouds = clouds_of(lump_views());
     PointCloud line = cloud_of({Vec3(1, 2, 3), Vec3(2, 4, 6)});
