@@ -49,3 +49,43 @@ run pictures.yaml block.off --unit mm --in "$clouds" -o changed
 mkdir -p "$root/docs/part-changed"
 cp changed/model.png changed/scans.png changed/updated.png "$root/docs/part-changed/"
 cp changed/block-change.png "$root/docs/part-changed/change.png"
+
+# The page on views without poses: eight views of a model, each turned and shifted in a way of its own, then registered.
+cat >view.yaml <<'YAML'
+scanmill: 1
+name: view
+inputs: {model: mesh, pose: transform}
+parameters:
+  direction: {default: [0, 0, 1], help: From the object to the scanner.}
+steps:
+  - virtual-scan: {views: $direction, resolution: 0.25 %diag, noise: 0.05 %diag, max-angle: 75 deg}
+    in: {mesh: model}
+  - apply-transform:
+    in: {value: virtual-scan, transform: pose}
+outputs: {"view.ply": apply-transform}
+YAML
+mkdir -p views
+number=0
+while read -r direction rotation shift; do
+    number=$((number + 1))
+    echo "{\"scanmill\": 1, \"poses\": [{\"rotation\": [$rotation], \"translation\": [$shift]}]}" >pose.json
+    run view.yaml "$data/meshes/elephant.off" --in pose=pose.json --set "direction=[$direction]" -o view
+    mv view/view.ply "views/view-$number.ply"
+done <<'VIEWS'
+1,0,0.2 0.5,0.5,0.5,0.5 0.4,0.1,0
+0.7,0.7,0.1 0.8,0,0,0.6 -0.5,0.3,0.1
+0,1,-0.2 0,0.6,0,0.8 0.2,-0.6,0.3
+-0.7,0.7,0.3 0.48,0.6,0.64,0 0.1,0.5,-0.4
+-1,0,0 0.6,0.48,0,0.64 -0.3,-0.4,-0.3
+-0.7,-0.7,-0.1 0.5,-0.5,0.5,0.5 0.6,-0.2,0.4
+0,-1,0.2 0,0,0.8,0.6 -0.1,0.2,0.6
+0.7,-0.7,-0.2 0.64,0,-0.48,0.6 0.3,0.6,-0.2
+VIEWS
+printf 'scanmill: 1\nname: merged\ninputs:\n  views: {kind: points, list: true, frame: "{stem}"}\nsteps:\n  - merge:\noutputs: {merged.ply: merge}\n' >merged.yaml
+run merged.yaml views/*.ply -o before
+run register-views views/*.ply -o placed
+run raw-scans views/*.ply -o after
+mkdir -p "$root/docs/into-one-frame"
+draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/views.png
+draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/placed.png
+draw after/raw-scans.ply mesh 'size: [400, 300]' docs/into-one-frame/mesh.png placed/register-views.ply
