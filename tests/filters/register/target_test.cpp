@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(RegisterToTarget, SymmetricModel,
                                          Shape{"LOfEqualLegs", [] { return l_shape(100, 100); }},
                                          Shape{"SixSidedNut", [] { return prism({circle(60, 6)}, 0, 30); }},
                                          Shape{"FiveSidedPrism", [] { return prism({circle(60, 5)}, 0, 30); }},
-                                         Shape{"Cylinder", [] { return prism({circle(40, 180)}, 0, 100); }},
-                                         Shape{"Sphere", [] { return geodesic_sphere(50, 24); }}),
+                                         Shape{"Cylinder", [] { return prism({circle(20, 90)}, 0, 50); }},
+                                         Shape{"Sphere", [] { return geodesic_sphere(25, 16); }}),
                          shape_name);
 
 class PlainModel : public testing::TestWithParam<Shape> {};
