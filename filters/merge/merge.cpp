@@ -222,7 +222,7 @@ MergeResult merge(Inputs given, const MergeParams& params, Context& context) {
     if (std::string doubt =
             merging::frames_doubt(all.positions.span(), all.columns.find("source")->values<u32>(), context);
         !doubt.empty())
-        context.doubt(doubt + (params.poses.empty() ? "; give the poses of the views, or align the files first"
+        context.doubt(doubt + (params.poses.empty() ? "; give the poses of the views, or find them with `register`"
                                                     : "; check the poses and their unit"));
 
     MergeResult result;

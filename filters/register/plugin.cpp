@@ -21,10 +21,10 @@ SCANMILL_FILTER() {
             "target",
             "A mesh or points that stay, such as a CAD model: `points` is then one scan, from one side or all sides.",
             optional, by_name)
-        .out<Transforms>(
-            "transform",
-            "One motion per placed view, into the frame of the first placed view; it never scales. With the "
-            "refused views and the accepted pairs.")
+        .out<Transforms>("transform",
+                         "One motion per placed view, into the frame of the first placed view or of the target; it "
+                         "never scales. With the "
+                         "refused views and the accepted pairs.")
         .param("overlap", &P::overlap, "Smallest share of the points that two views must have in common.", above(0),
                at_most(1))
         .param(
@@ -49,7 +49,10 @@ SCANMILL_FILTER() {
             "whole-views", &P::whole_views,
             "Whether each view shows the whole side of the object that faces its scanner. false: the scanner's field "
             "cuts views off, and parts outside the convex outline of a view do not contradict it.")
-        .param("seed-tries", &P::seed_tries, "Number of poses of a pair that are refined and tested.", at_least(1))
+        .param("seed-tries", &P::seed_tries,
+               "Number of poses of a pair that are refined; the ten with most votes are tested. On a target, all that "
+               "descriptors propose are refined, and so many of them are fitted with the points.",
+               at_least(1), at_most(300))
         .choice("on-refusal", &P::on_refusal,
                 {{"fail", P::OnRefusal::fail, "The step fails, and the message lists every refused view."},
                  {"leave-out", P::OnRefusal::leave_out,

@@ -15,7 +15,7 @@ namespace {
 constexpr double normal_radius = 2, descriptor_radius = 5, sight_edge = 1.0 / 3;
 /// Distance of the kept points for about as many points as there are occupied voxels with the resolution as edge.
 constexpr double thinning = 0.8;
-/// Of a normal's plane (the point itself is one more), and of a descriptor.
+/// For a normal's plane (the point itself is one more), and for a descriptor.
 constexpr std::size_t normal_neighbours = 29, descriptor_neighbours = 100;
 
 /// Points on a line have no plane; the direction to the scanner then is the normal.

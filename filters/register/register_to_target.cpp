@@ -4,9 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 
 #include "register/view_checks.hpp"
 #include "scanmill/base/elementary.hpp"
@@ -40,7 +41,7 @@ constexpr double least_coarse_overlap = 0.6;
 constexpr double least_fit = 0.8;
 /// Largest share of the target's points in front of the scan. Right poses have up to 0.036, wrong ones 0.08 to 0.13 or
 /// a rival.
-constexpr double largest_in_front = 0.08;
+constexpr double largest_in_front = 0.055;
 /// The mean of the directions to the scanner is at least this long for a scan from one side, whose lines of sight are
 /// tested with this reach, in multiples of the distance above.
 constexpr double least_one_sided = 0.8, sight_reach = 1.25;
@@ -59,7 +60,9 @@ constexpr int symmetries[] = {3, 5, 6, 7, 8};
 constexpr int most_probe_rounds = 4;
 constexpr double clearly_better = 1.02;
 /// Refining a pose with reduced points is cheap, so all that the descriptors propose are refined.
-constexpr std::size_t all_seeds = 300, all_correspondences = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t all_seeds = 300;
+/// Nearly all that a scan of 1,500 reduced points has. Memory and time grow with the square.
+constexpr std::size_t target_correspondences = 9000;
 constexpr std::size_t most_target_samples = 2'000'000;
 
 /// Centroid and principal axes of the target; the axes are right-handed.
@@ -109,6 +112,37 @@ struct Pose {
 
 /// Sorts by fit, the largest first; equal ones keep their order.
 void sort_by_fit(std::vector<Pose>& poses) { std::ranges::stable_sort(poses, std::ranges::greater(), &Pose::fit); }
+
+/// Points in rows across the longest edges of the triangles; nullopt if there are too many.
+std::optional<TargetSamples> at_most_samples(const TriangleMesh& mesh, double spacing) {
+    TargetSamples samples{{}, {}, spacing};
+    const std::size_t most = most_target_samples + mesh.triangles.size();
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 area = area_vector(mesh.positions, t);
+        if (!(area.norm() > 0)) continue;
+        u32 longest = 0;
+        double length = -1;
+        for (u32 i = 0; i < 3; ++i)
+            if (const double edge = (mesh.positions[t[(i + 1) % 3]] - mesh.positions[t[i]]).norm(); edge > length)
+                length = edge, longest = i;
+        const Vec3 &from = mesh.positions[t[longest]], &to = mesh.positions[t[(longest + 1) % 3]],
+                   &apex = mesh.positions[t[(longest + 2) % 3]];
+        const Vec3 normal = area.normalized(), along = (to - from) / length, across = normal.cross(along);
+        const double foot = along.dot(apex - from), height = area.norm() / length;
+        const double rows = std::ceil(length / spacing);
+        for (double row = 0.5; row < rows; ++row) {
+            const double x = row / rows * length,
+                         width = height * (x < foot ? x / foot : (length - x) / (length - foot));
+            const double columns = std::ceil(width / spacing);
+            for (double column = 0.5; column < columns; ++column) {
+                samples.points.push_back(from + x * along + column / columns * width * across);
+                samples.normals.push_back(normal);
+            }
+            if (samples.points.size() > most) return std::nullopt;
+        }
+    }
+    return samples;
+}
 
 Vec3 mean_of(std::span<const Vec3> directions) {
     Vec3 sum = Vec3::Zero();
@@ -161,13 +195,13 @@ public:
         return poses;
     }
 
-    /// Fits the first poses with all samples, if their fit is near the best one; the others keep what they have.
+    /// Fits the poses with all samples whose fit is near the best one; the others keep what they have.
     void finish(std::vector<Pose>& poses) const {
         double best = 0;
         for (const Pose& pose : poses) best = std::max(best, pose.fit);
         const RelaxationStage stages[] = {{1.5 * tolerance_, 12}};
         in_parallel(poses, [&](std::size_t i) {
-            return i < most_finished && poses[i].fit > 0 && poses[i].fit >= worth_finishing * best
+            return poses[i].fit > 0 && poses[i].fit >= worth_finishing * best
                        ? fitted(scan_, target_, poses[i].motion, stages)
                        : poses[i];
         });
@@ -233,36 +267,8 @@ std::string_view name_of(TargetRefusal refusal) {
 }
 
 TargetSamples samples_of(const TriangleMesh& mesh, double spacing) {
-    double area = 0;
-    for (const Triangle& t : mesh.triangles) area += area_vector(mesh.positions, t).norm() / 2;
-    spacing = std::max(spacing, std::sqrt(area / static_cast<double>(most_target_samples)));
-    TargetSamples samples{{}, {}, spacing};
-    const double longest_edge = 1.5 * spacing;  // then the centroids are about `spacing` apart
-    std::vector<std::array<Vec3, 3>> pieces;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 normal = area_vector(mesh.positions, t);
-        if (!(normal.norm() > 0)) continue;
-        pieces.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-        while (!pieces.empty()) {
-            const std::array<Vec3, 3> piece = pieces.back();
-            pieces.pop_back();
-            int longest = 0;
-            double squared = -1;
-            for (int i = 0; i < 3; ++i)
-                if (const double edge = (piece[(i + 1) % 3] - piece[i]).squaredNorm(); edge > squared)
-                    squared = edge, longest = i;
-            const Vec3 &from = piece[longest], &to = piece[(longest + 1) % 3], &apex = piece[(longest + 2) % 3];
-            if (squared > longest_edge * longest_edge) {
-                const Vec3 middle = (from + to) / 2;
-                pieces.push_back({middle, to, apex});
-                pieces.push_back({from, middle, apex});
-            } else {
-                samples.points.push_back((from + to + apex) / 3);
-                samples.normals.push_back(normal.normalized());
-            }
-        }
-    }
-    return samples;
+    for (;; spacing *= 2)
+        if (std::optional<TargetSamples> samples = at_most_samples(mesh, spacing)) return std::move(*samples);
 }
 
 TargetSamples samples_of(std::span<const Vec3> points, std::span<const Vec3> to_scanner, double spacing) {
@@ -304,7 +310,7 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     std::vector<RigidMotion> starts;
     if (scan.start) starts.push_back(*scan.start);
     std::vector<Candidate> candidates =
-        registered_pair(reduced_scan, reduced_target, {params.overlap, all_seeds, all_seeds, all_correspondences})
+        registered_pair(reduced_scan, reduced_target, {params.overlap, all_seeds, all_seeds, target_correspondences})
             .candidates;
     std::ranges::stable_sort(candidates, std::ranges::greater(), [](const Candidate& c) { return c.measures.overlap; });
     candidates.resize(std::min<std::size_t>(candidates.size(), params.seed_tries));
@@ -341,12 +347,13 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
         std::stable_sort(chosen.begin() + 1, chosen.end(), [&](const Pose& a, const Pose& b) {
             return difference(a.motion, *scan.start) < difference(b.motion, *scan.start);
         });
+    chosen.resize(std::min(chosen.size(), most_finished));
     fitting.finish(chosen);
     sort_by_fit(chosen);
     execution.progress(0.9);
     const double best = chosen[0].fit;
     const auto is_equal = [&](const Pose& pose) {
-        return pose.fit >= equal_fit * best || 1 - pose.fit < equal_rest * (1 - best);
+        return pose.fit > 0 && (pose.fit >= equal_fit * best || 1 - pose.fit < equal_rest * (1 - best));
     };
     bool is_chosen_by_start = false;
     if (scan.start) {
@@ -362,7 +369,6 @@ RegisterToTargetResult register_to_target(const ScanToPlace& scan,
     result.rivals = static_cast<std::size_t>(std::ranges::count_if(chosen, is_equal)) - 1;
     if (chosen.size() > 1) {
         result.rival = chosen[1].fit;
-        result.rival_pose = chosen[1].motion;
     }
     if (const Vec3 side = mean_of(scan.to_scanner); side.norm() >= least_one_sided)
         result.front = share_in_front(surface, side.normalized(), reduced_target, result);

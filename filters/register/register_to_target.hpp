@@ -4,6 +4,7 @@
 ///
 /// Source: as for register_views.hpp; the test against rivals is our own.
 
+#include <algorithm>
 #include <functional>
 
 #include "register/register_views.hpp"
@@ -16,8 +17,9 @@ struct TargetSamples {
     double spacing = 0;  ///< about the distance of a point from the nearest other one
 };
 
-/// Points of the mesh, about `spacing` apart, with the normals of their triangles: the centroids of the pieces after
-/// the longest edges were halved. Triangles without area have none. Pre: finite; spacing > 0.
+/// Points of the mesh in rows across the longest edge of each triangle, at most `spacing` apart, with the normals of
+/// the triangles. Triangles without area have none. The spacing is doubled until there are at most two million points
+/// beside one per triangle. Pre: finite; spacing > 0.
 TargetSamples samples_of(const TriangleMesh& mesh, double spacing);
 
 /// Points of the cloud, about `spacing` apart or as they are if that is farther, with the normals of the planes through
@@ -49,11 +51,10 @@ struct RegisterToTargetResult {
     RigidMotion pose;
     TargetRefusal refusal = TargetRefusal::no_fit;
     double fit = 0;  ///< share of the scan's points that lie on the model
-    double rival = 0;  ///< the largest share of another pose
+    double rival = 0;  ///< the largest share of another pose; with a start, the share of the next nearest one
     std::size_t rivals = 0;  ///< number of other poses that fit about equally well
-    RigidMotion rival_pose;
     double slide = 0;  ///< see PairMeasures::slide
-    /// Of scans from one side: number of the target's points in front of the scan, as a share of these and of the ones
+    /// For scans from one side: number of the target's points in front of the scan, as a share of these and of the ones
     /// on it.
     double front = 0;
     double spacing = 0;  ///< the larger one of the scan's and the target's
@@ -61,14 +62,13 @@ struct RegisterToTargetResult {
     double tolerance = 0;  ///< points up to so far from the model's planes lie on it
 
     /// How much better the best pose is than any other.
-    double confidence() const { return fit > 0 ? 1 - rival / fit : 0; }
+    double confidence() const { return fit > 0 ? std::max(0.0, 1 - rival / fit) : 0; }
 };
 
 /// Registers a scan to a target. Tries the poses that descriptors propose, and turns of the best one about the
 /// principal axes of the target, because symmetric parts fit in several poses.
 ///
-/// `target` returns samples of the target that are at most as far apart as its argument, which is the spacing of the
-/// scan.
+/// `target` returns samples of the target that are about as far apart as its argument, or farther.
 /// Pre:  units are equal. Throws Error as register_views() for the scan, and for a target without samples.
 /// Determinism: bytes do not depend on the number of threads.
 /// Cost: a few seconds; most of it refines the turned poses.

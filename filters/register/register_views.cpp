@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
+#include <mutex>
 #include <numeric>
 
 #include "register/scale.hpp"
@@ -83,7 +83,7 @@ public:
 
     struct AsTheyAre {
         std::optional<std::pair<u32, u32>> contradicting;  ///< the first pair whose poses contradict each other
-        bool is_connected = false;  ///< pairs that overlap lead from each view to each other one
+        bool is_connected = false;  ///< pairs that overlap and do not slide lead from each view to each other one
         bool is_right() const { return !contradicting && is_connected; }
     };
     /// Whether no accepted pair has another relative pose than these.
@@ -103,7 +103,7 @@ public:
                 const PairMeasures measures = measured(*reduced_[a], *reduced_[b], poses[a].then(poses[b].inverse()));
                 if (measures.overlap < least_checked_overlap) continue;
                 if (sight_contradicts(measures) && !test.contradicting) test.contradicting = {a, b};
-                groups.unite(a, b);
+                if (measures.slide >= least_slide) groups.unite(a, b);
             }
         test.is_connected = true;
         for (u32 a = 0; a < views_.size(); ++a) test.is_connected &= groups.find(a) == 0;
@@ -146,16 +146,6 @@ private:
             const std::scoped_lock lock(mutex);
             execution_.progress(0.1 + 0.6 * static_cast<double>(++done) / static_cast<double>(pairs_.size()));
         });
-        for (const Edge& pair : pairs_) {
-            const auto count = [&](Verdict verdict) {
-                return static_cast<std::size_t>(
-                    std::ranges::count(pair.result.candidates, verdict, &Candidate::verdict));
-            };
-            result.dropped_front += count(Verdict::contradicts);
-            result.dropped_missing += count(Verdict::missing);
-            result.dropped_slide += count(Verdict::slides);
-            result.dropped_misfit += count(Verdict::misfit);
-        }
     }
 
     /// Brings the accepted candidates of a pair onto each other with the full views, and rejects those that do not fit.
@@ -185,7 +175,7 @@ private:
     }
 
     bool sight_contradicts(const PairMeasures& measures) const {
-        return measures.overlap >= least_checked_overlap &&
+        return measures.overlap >= std::min(least_checked_overlap, params_.overlap) &&
                measures.front >
                    (measures.overlap < params_.overlap ? contradicting_front_of_little_overlap : contradicting_front);
     }
@@ -208,9 +198,6 @@ private:
         const CheckedEdges checked = checked_by_triples(all, extents, same_pose * resolution_);
         for (std::size_t i = 0; i < all.size(); ++i)
             if (checked.is_kept[i]) edges_.push_back(all[i]), pair_of_edge_.push_back(pair_of_edge[i]);
-        result.triples = checked.triples;
-        result.inconsistent = checked.inconsistent;
-        result.dropped_cycle = checked.dropped;
     }
 
     /// Places the largest group of views. Returns false if a view was taken out because it contradicts the others.
@@ -232,12 +219,14 @@ private:
         for (std::size_t e = 0; e < usable.size(); ++e) {
             if (!poses_[usable[e].from] || !poses_[usable[e].to]) continue;
             const std::size_t pair = pair_of_edge_[static_cast<std::size_t>(index_of(usable[e]))];
-            accepted.push_back({usable[e].from, usable[e].to, usable[e].motion, pairs_[pair].result.best()->measures,
-                                std::ranges::find(tree.edges, e) != tree.edges.end()});
+            accepted.push_back({usable[e].from, usable[e].to, usable[e].motion, pairs_[pair].result.best()->measures});
         }
         return true;
     }
 
+    bool has_edge(u32 a, u32 b) const {
+        return std::ranges::any_of(edges_, [&](const GraphEdge& e) { return e.from == a && e.to == b; });
+    }
     bool is_usable(u32 view) const { return refusal_[view] == ViewRefusal::none; }
     std::size_t index_of(const GraphEdge& edge) const {
         const auto found =
@@ -257,8 +246,9 @@ private:
         std::vector<ViewPair> pairs;
         for (u32 a = 0; a < placed.size(); ++a)
             for (u32 b = a + 1; b < placed.size(); ++b)
-                if (measured(*reduced_[placed[a]], *reduced_[placed[b]], relative(placed[a], placed[b])).overlap >=
-                    least_checked_overlap)
+                if (has_edge(placed[a], placed[b]) ||
+                    measured(*reduced_[placed[a]], *reduced_[placed[b]], relative(placed[a], placed[b])).overlap >=
+                        least_checked_overlap)
                     pairs.push_back({a, b});
         std::vector<RelaxationStage> stages;
         for (const RelaxationStage& stage : relaxation_stages)
@@ -267,7 +257,6 @@ private:
         const Relaxed relaxed = scanmill::relaxed(surfaces, std::move(poses), pairs, stages, settled_, execution_);
 
         for (std::size_t i = 0; i < placed.size(); ++i) poses_[placed[i]] = relaxed.poses[i];
-        result.relaxed_pairs = pairs.size();
         std::vector<Relaxed::Residual> of_view(views_.size());
         Relaxed::Residual all;
         const auto add = [](Relaxed::Residual& to, const Relaxed::Residual& more) {
@@ -366,14 +355,17 @@ private:
     std::vector<std::optional<RigidMotion>> poses_;
 };
 
-/// The order of the views by content: number of points, then their bytes.
+/// The order of the views by content: number of points, then their coordinates.
 std::vector<u32> order_of(std::span<const ViewToRegister> views) {
     std::vector<u32> order(views.size());
     std::iota(order.begin(), order.end(), 0);
     const auto compare = [&](u32 a, u32 b) {
         const std::span<const Vec3> one = views[a].points, other = views[b].points;
         if (one.size() != other.size()) return one.size() < other.size() ? -1 : 1;
-        return std::memcmp(one.data(), other.data(), one.size_bytes());
+        for (std::size_t i = 0; i < one.size(); ++i)
+            for (int axis = 0; axis < 3; ++axis)
+                if (one[i][axis] != other[i][axis]) return one[i][axis] < other[i][axis] ? -1 : 1;
+        return 0;
     };
     std::ranges::sort(order, [&](u32 a, u32 b) { return compare(a, b) < 0; });
     for (std::size_t i = 1; i < order.size(); ++i)
@@ -424,8 +416,8 @@ RegisterViewsResult register_views(std::span<const ViewToRegister> views, const 
         single.placed = 1;
         return single;
     }
-    // Views of one point each have no order by content that matters, and are many.
-    const bool has_start = std::ranges::all_of(views, [](const ViewToRegister& v) { return v.start.has_value(); });
+    const bool has_start =
+        !params.as_is && std::ranges::all_of(views, [](const ViewToRegister& v) { return v.start.has_value(); });
     const auto is_large = [](const ViewToRegister& v) { return v.points.size() >= least_reduced_points; };
     const auto large = static_cast<std::size_t>(std::ranges::count_if(views, is_large));
     if (const std::size_t pairs = large * (large - (large > 0)) / 2; pairs > most_pairs && !has_start)

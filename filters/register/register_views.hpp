@@ -27,9 +27,9 @@ struct RegisterViewsParams {
     /// outline of a view are no evidence against a pose.
     bool whole_views = true;
     /// The poses of the views (`start`, or the identity) are tested as they are. If no lines of sight contradict them
-    /// and overlapping pairs connect all views, they are kept bit for bit; otherwise the views are registered without
-    /// them. If that refuses a view, and neither a line of sight nor an accepted pair contradicts the poses, they are
-    /// kept after all.
+    /// and pairs that overlap and do not slide connect all views, they are kept bit for bit; otherwise the views are
+    /// registered without them. If that refuses a view, and neither a line of sight nor an accepted pair contradicts
+    /// the poses, they are kept after all.
     bool as_is = false;
 };
 
@@ -76,7 +76,6 @@ struct RegisteredPair {
     u32 from, to;  ///< views, in the caller's order, from < to
     RigidMotion motion;  ///< before the relaxation
     registration::PairMeasures measures;
-    bool is_in_tree = false;
 };
 
 struct RegisterViewsResult {
@@ -84,12 +83,8 @@ struct RegisterViewsResult {
     std::vector<RegisteredPair> pairs;
     std::size_t placed = 0;
     double spacing = 0, resolution = 0;
-    std::size_t relaxed_pairs = 0;
-    std::size_t triples = 0, inconsistent = 0;
     double rms = 0;  ///< root mean square distance from the planes of the other views, over all placed pairs
     double confidence = 0;  ///< the smallest score in the tree
-    /// Number of candidates that each test rejected, and of edges that contradicted others.
-    std::size_t dropped_front = 0, dropped_missing = 0, dropped_slide = 0, dropped_misfit = 0, dropped_cycle = 0;
     /// With `as_is`: whether the poses were kept; otherwise the first pair that contradicts them, or none if the views
     /// are not connected.
     bool kept_as_is = false;

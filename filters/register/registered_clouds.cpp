@@ -51,7 +51,7 @@ void require_one_unit(Views views, std::span<const std::string> names) {
 Array<Vec3> unit_vectors(const PointCloud& view, std::string_view name) {
     const Column* column = view.columns.find(name);
     Array<Vec3> directions;
-    if (!column || column->components() != 3) return directions;
+    if (!column || column->is_list() || column->components() != 3) return directions;
     for (std::size_t row = 0; row < column->rows(); ++row) {
         const Vec3 direction(column->number(row, 0), column->number(row, 1), column->number(row, 2));
         const double length = direction.norm();
@@ -61,22 +61,47 @@ Array<Vec3> unit_vectors(const PointCloud& view, std::string_view name) {
 }
 
 /// The sum of the directions in the column `approach`, else in `normal`; 0 without both.
-Vec3 mean_direction(const PointCloud& view) {
+Vec3 sum_of_directions(const PointCloud& view) {
     for (const char* column : {"approach", "normal"}) {
         Vec3 sum = Vec3::Zero();
-        for (const Vec3& direction : unit_vectors(view, column)) sum += direction;
-        if (!sum.isZero(0)) return sum;
+        bool has_any = false;
+        for (const Vec3& direction : unit_vectors(view, column)) {
+            sum += direction;
+            has_any |= !direction.isZero(0);
+        }
+        if (has_any) return sum;
     }
     return Vec3::Zero();
 }
 
-/// Unit vectors to the scanner, one per point: the column `approach`, else `normal`, else +z with a warning.
+/// The first view whose directions to the scanner nearly cancel each other.
+std::optional<std::size_t> seen_from_all_sides(Views views) {
+    constexpr double least_mean = 0.3;  // views have 0.5 and more, by their normals
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const bool has_column = views[i]->columns.find("approach") || views[i]->columns.find("normal");
+        const double mean = sum_of_directions(*views[i]).norm() / static_cast<double>(views[i]->size());
+        if (has_column && mean > 0 && mean < least_mean) return i;
+    }
+    return std::nullopt;
+}
+
+/// Unit vectors to the scanner: for each point the column `approach`, else `normal`, else +z with a warning.
 Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Context& context) {
-    for (const char* column : {"approach", "normal"})
-        if (Array<Vec3> directions = unit_vectors(cloud, column); !directions.empty()) return directions;
-    context.warn(
-        fmt::format("{} has no column `approach` or `normal`: the scanner is assumed on the side of +z", name));
-    return Array<Vec3>(1, Vec3::UnitZ());
+    Array<Vec3> directions(cloud.size(), Vec3::Zero());
+    for (const char* column : {"approach", "normal"}) {
+        const Array<Vec3> given = unit_vectors(cloud, column);
+        for (std::size_t i = 0; i < given.size(); ++i)
+            if (directions[i].isZero(0)) directions[i] = given[i];
+    }
+    const auto unknown = [](const Vec3& direction) { return direction.isZero(0); };
+    if (const auto count = std::ranges::count_if(directions, unknown)) {
+        context.warn(
+            fmt::format("{} of {} points of {} have no direction in a column `approach` or `normal`: the scanner "
+                        "is assumed on the side of +z",
+                        count, directions.size(), name));
+        std::ranges::replace_if(directions, unknown, Vec3(Vec3::UnitZ()));
+    }
+    return directions;
 }
 
 std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::string> names, Context& context) {
@@ -84,7 +109,7 @@ std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::
     std::vector<std::string> assumed;
     for (std::size_t i = 0; i < views.size(); ++i) {
         ViewToRegister view{names[i], views[i]->positions.span(), Vec3::UnitZ(), {}};
-        const Vec3 direction = mean_direction(*views[i]);
+        const Vec3 direction = sum_of_directions(*views[i]);
         if (direction.isZero(0))
             assumed.push_back(names[i]);
         else
@@ -145,16 +170,30 @@ Transforms given_motions(Views views, const RegisterParams& params, Context& con
         }
     }
     report_counts(views.size(), result.motions.size(), context);
+    std::vector<std::string> refused;
+    for (const RefusedFrame& each : result.refused) refused.push_back(fmt::format("'{}' ({})", each.from, each.reason));
+    if (!refused.empty()) {
+        const std::string sentence = fmt::format("the file of poses refuses {} of {}: {}", refused.size(),
+                                                 count_text(views.size(), "view", "views"), fmt::join(refused, ", "));
+        if (params.on_refusal == RegisterParams::OnRefusal::fail)
+            throw Error("{}", sentence).hint("remove these views, or choose 'on-refusal: leave-out'");
+        context.doubt(sentence);
+    }
     return result;
 }
 
-/// One view stays where it is.
-Transforms unmoved(const PointCloud& view, Context& context) {
-    RigidTransform pose;
-    pose.unit = view.frame.unit;
-    pose.from = pose.to = view.frame.name;
-    report_counts(1, 1, context);
-    return pose;
+/// Every view stays where it is.
+Transforms unmoved(Views views, Context& context) {
+    Transforms result;
+    for (const auto& view : views) {
+        RigidTransform pose;
+        pose.unit = view->frame.unit;
+        pose.from = view->frame.name;
+        pose.to = views[0]->frame.name;
+        result.motions.push_back(pose);
+    }
+    report_counts(views.size(), views.size(), context);
+    return result;
 }
 
 std::string reason_of(const RegisteredView& view, std::span<const std::string> names) {
@@ -163,6 +202,10 @@ std::string reason_of(const RegisteredView& view, std::span<const std::string> n
         text += fmt::format(": best with '{}', overlap {:.0f} %, in front {:.1f} %, missing {:.1f} %, slide {:.4f}",
                             names[view.best_with], 100 * view.best.overlap, 100 * view.best.front,
                             100 * view.best.missing, view.best.slide);
+    if (view.refusal == ViewRefusal::slides)
+        text += fmt::format(", like {}", view.best.free_directions == 1   ? "a body of revolution or an extrusion"
+                                         : view.best.free_directions == 2 ? "a cylinder"
+                                                                          : "a plane or a sphere");
     if (view.scale) text += fmt::format("; its size is {:.3g} times that of the others: {}?", *view.scale, view.units);
     return text;
 }
@@ -184,8 +227,8 @@ void refuse(const RegisterViewsResult& found, std::span<const std::string> names
     context.doubt(sentence);
 }
 
-/// A doubt that names the pairs that no way over other pairs confirms. Where missing points do not contradict a pose,
-/// flat pieces of different faces can look alike.
+/// A doubt that names the pairs that no other way from view to view confirms. Where missing points do not contradict a
+/// pose, flat pieces of different faces can look alike.
 void doubt_unconfirmed(const RegisterViewsResult& found, std::span<const std::string> names, Context& context) {
     std::vector<std::string> unconfirmed;
     for (const RegisteredPair& pair : found.pairs) {
@@ -232,9 +275,22 @@ void report(const RegisterViewsResult& found, Context& context) {
 Transforms registered_clouds(Views views, const RegisterParams& params, Context& context) {
     if (views.empty()) throw Error("needs views; there are none").hint("wire the scans: 'in: {points: views}'");
     if (params.poses) return given_motions(views, params, context);
-    if (views.size() == 1) return unmoved(*views[0], context);
+    if (views.size() == 1) return unmoved(views, context);
     const std::vector<std::string> names = names_of(views);
     require_one_unit(views, names);
+    if (params.start && params.as_is)
+        throw Error("`start` and `as-is` contradict each other: the poses come from the file, or are as they are")
+            .hint("give one of them");
+    if (const auto view = seen_from_all_sides(views)) {
+        if (!params.as_is)
+            throw Error("'{}' was scanned from several sides, so it is no view", names[*view])
+                .hint("give the views of each position of the scanner, or place the whole scan with a `target`");
+        context.warn(
+            fmt::format("'{}' was scanned from several sides, so lines of sight cannot test the views; they stay "
+                        "as they are",
+                        names[*view]));
+        return unmoved(views, context);
+    }
     const LengthUnit unit = views[0]->frame.unit;
     const Vec3& origin = views[0]->frame.origin;
     std::vector<ViewToRegister> inputs = views_to_register(views, names, context);
@@ -249,13 +305,16 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
     }
     const RegisterViewsResult found = register_views(inputs, options_of(params), context);
     if (params.as_is && !found.kept_as_is)
-        context.warn(found.contradicting
-                         ? fmt::format("'{}' and '{}' contradict each other as they are; the views are registered anew",
-                                       names[found.contradicting->first], names[found.contradicting->second])
-                         : "overlapping pairs do not connect all views as they are; the views are registered anew");
+        context.warn(
+            found.contradicting
+                ? fmt::format("'{}' and '{}' contradict each other as they are; the views are registered anew",
+                              names[found.contradicting->first], names[found.contradicting->second])
+                : "no pairs that determine the poses connect all views as they are; the views are registered anew");
     if (found.is_unconnected)
-        context.doubt(fmt::format("the {} overlap too little to be tested or registered; they stay as they are",
-                                  count_text(names.size(), "view", "views")));
+        context.doubt(fmt::format(
+            "the {} overlap too little, or slide on each other, so their poses cannot be tested or found; they "
+            "stay as they are",
+            count_text(names.size(), "view", "views")));
     refuse(found, names, params, context);
     if (!params.whole_views && !found.kept_as_is) doubt_unconfirmed(found, names, context);
 

@@ -27,7 +27,7 @@ struct Thickness {
     double layers;  ///< median distance between the planes of its own and of other views
 };
 
-/// Of every 50th point, where another view has points on all sides within 2 spacings.
+/// For every 50th point, where another view has points on all sides within 2 spacings.
 Thickness thickness(const PointCloud& cloud, double spacing) {
     const std::span<const u32> source = cloud.columns.find("source")->values<u32>();
     std::vector<PointTree> trees;

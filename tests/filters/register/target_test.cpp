@@ -151,6 +151,34 @@ TEST_P(PlainModel, IsPlacedFromAllSides) {
     EXPECT_LT(error_of(result, scan), 0.15);
 }
 
+TEST(RegisterToTarget, AStartDecidesBetweenEqualPoses) {
+    const TriangleMesh model = box(120, 80, 40);
+    const Scan scan = scan_of(model, 1);
+    RigidMotion near = scan.truth;
+    near.translation += Vec3(2, -1, 1);
+    const RegisterToTargetResult result = placed(scan, model, 2, near);
+    EXPECT_EQ(result.refusal, TargetRefusal::none) << name_of(result.refusal);
+    EXPECT_LT(error_of(result, scan), 0.15);
+}
+
+TEST(RegisterToTarget, TheNumberOfThreads_ChangesNothing) {
+    const TriangleMesh model = l_shape(120, 80);
+    const Scan scan = scan_of(model, 1);
+    const RegisterToTargetResult one = placed(scan, model, 1), three = placed(scan, model, 3);
+    EXPECT_EQ(one.pose.rotation, three.pose.rotation);
+    EXPECT_EQ(one.pose.translation, three.pose.translation);
+    EXPECT_EQ(one.fit, three.fit);
+    EXPECT_EQ(one.rival, three.rival);
+}
+
+TEST(RegisterToTarget, ALongThinTriangle_IsSampledEvenly) {
+    const TriangleMesh sliver = soup({Vec3(0, 0, 0), Vec3(1000, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}});
+    const TargetSamples samples = samples_of(sliver, 1);
+    EXPECT_GT(samples.points.size(), 666u);
+    EXPECT_LT(samples.points.size(), 3000u);
+    for (const Vec3& n : samples.normals) EXPECT_EQ(n, Vec3::UnitZ());
+}
+
 INSTANTIATE_TEST_SUITE_P(RegisterToTarget, PlainModel,
                          testing::Values(Shape{"Lump", [] { return lump(); }},
                                          Shape{"LOfUnequalLegs", [] { return l_shape(120, 80); }},

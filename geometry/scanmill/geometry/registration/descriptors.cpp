@@ -20,7 +20,8 @@ constexpr int bins = 11;
 static_assert(3 * bins == descriptor_size);
 /// The bins of an angle add up to this.
 constexpr double total = 100;
-/// Of products of unit vectors. Parallel normals are common on flat parts; rounding must not decide which comes first.
+/// Products of unit vectors are rounded to this. Parallel normals are common on flat parts; rounding must not decide
+/// which comes first.
 constexpr double rounding = 1e-9;
 
 /// The bins of the three angles between two points with normals. The point whose normal is nearer to the connecting

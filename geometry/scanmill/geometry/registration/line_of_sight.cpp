@@ -22,6 +22,7 @@ bool is_left(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen
 
 /// Andrew's chains: the lower one from left to right, then the upper one back.
 std::vector<Eigen::Vector2d> convex_outline(const ProjectedGrid& grid, std::span<const Vec3> points) {
+    if (points.empty()) return {};
     std::vector<Eigen::Vector2d> sorted;
     for (const Vec3& p : points) {
         const ProjectedGrid::Ray ray = grid.ray_of(p);

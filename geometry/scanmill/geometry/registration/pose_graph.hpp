@@ -26,9 +26,9 @@ struct ViewExtent {
 };
 
 struct CheckedEdges {
-    /// Of the input, ascending: whether the edge is kept.
+    /// For each edge of the input: whether it is kept.
     std::vector<bool> is_kept;
-    /// Of the input, before any edge is dropped.
+    /// Numbers in the input, before any edge is dropped.
     std::size_t triples = 0, inconsistent = 0;
     std::size_t dropped = 0;  ///< edges with more inconsistent than consistent triples
     std::size_t unconfirmed = 0;  ///< doubtful edges without a consistent triple

@@ -53,7 +53,7 @@ ProjectedGrid::ProjectedGrid(std::span<const Vec3> points, const Vec3& direction
 ProjectedGrid::Nearest ProjectedGrid::nearest(const Vec3& position, double guess, double limit) const {
     const Ray at = ray_of(position);
     // Cells are visited whole, so a radius of less than an edge would save little.
-    for (double radius = std::clamp(guess, edge_ / 2, limit);; radius = std::min(2 * radius, limit)) {
+    for (double radius = std::min(std::max(guess, edge_ / 2), limit);; radius = std::min(2 * radius, limit)) {
         double least = std::numeric_limits<double>::infinity(), second = least;
         u32 best = Nearest::none;
         any_within(at, radius, [&](const Ray& ray) {
