@@ -190,3 +190,28 @@ def virtual_probe():
     picture.text((1.6, 1.6), "edge")
     picture.line((2.3, 1.65), edge, INK, 1)
     return picture
+
+
+def probe_compensate():
+    """The circles round the centres of two touches of one edge, and their intersection away from the approaches."""
+    picture = Picture(9, 4)
+    edge, half, radius, turn = (4.5, 1.5), math.radians(42), 1.1, math.radians(28)
+    faces = [(edge[0] + s * 2 * math.sin(half), edge[1] - 2 * math.cos(half)) for s in (-1, 1)]
+    picture.polygon([faces[0], edge, faces[1]], SOLID, INK)
+    for s in (-1, 1):
+        off = 0.2 + 0.12 * s  # of the reference point, which is beside the edge, across this approach
+        u = (s * math.sin(turn), math.cos(turn))
+        reach = math.sqrt(radius**2 - off**2)
+        centre = (edge[0] + reach * u[0] + off * u[1], edge[1] + reach * u[1] - off * u[0])
+        picture.circle(centre, radius, PALE if s < 0 else INK)
+        picture.dot(centre, INK, 4)
+        contact = (centre[0] - radius * u[0], centre[1] - radius * u[1])
+        picture.arrow((centre[0] + 0.9 * u[0], centre[1] + 0.9 * u[1]), centre, INK)
+        picture.line(centre, contact, INK, 1, "4 3")
+        picture.dot(contact, INK, 4, hollow=True)
+    picture.dot(edge, BRIGHT, 5)
+    picture.text((6.6, 1.2), "point of the pair", BRIGHT)
+    picture.line((6.5, 1.25), edge, BRIGHT, 1)
+    picture.text((0.6, 0.8), "reported contacts")
+    picture.line((2.5, 0.95), (edge[0] + 0.17, edge[1] - 0.02), INK, 1)
+    return picture

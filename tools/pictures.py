@@ -46,6 +46,7 @@ def main():
         ("tessellate", patches.tessellate),
         ("tight_cocone", cocones.tight_cocone),
         ("virtual_probe", frames.virtual_probe),
+        ("probe_compensate", frames.probe_compensate),
         ("virtual_scan", clouds.virtual_scan),
         ("voxel_thin", clouds.voxel_thin),
     ):

@@ -73,6 +73,7 @@ const std::vector<Step> steps{
     {"touches", "probe-planner", "radius: 0.05 u, scanner-error: 0.02 u, spacing: 0.2 u, directions: 2",
      "features: moved-lines, mesh: moved"},
     {"touched", "virtual-probe", "noise: 0.001 u", "probes: touches, mesh: moved"},
+    {"edge-points", "probe-compensate", "radius: 0.05 u, scanner-error: 0.02 u", "points: touched"},
     {"picture", "render", "edges: true, boundaries: true, size: [200, 150]", "scene: moved, over: touches"},
     {"bands", "render", "style: lines, size: [200, 150], camera: [auto, front]", "scene: surface"},
     {"points-picture", "render", "size: [200, 150], colour: deviation", "scene: inspected.deviation, truth: reduced"},
