@@ -61,6 +61,18 @@ SCANMILL_FILTER() {
             "measure the edge exactly. A point gets only one touch and counts as `single` if the safe range leaves "
             "less than 10 deg between the two, or if one of them is too tilted, obstructed or too narrow.",
             at_least(1), at_most(2))
+        .param("dmis-header", &P::dmis_header,
+               "A text file with the statements before the first touch of a DMIS program of the plan, in place of the "
+               "default ones. {radius}, {diameter}, {unit}, {approach}, {retract}, {search} and {clearance} in it are "
+               "replaced.",
+               word("none"))
+        .choice("dmis-goto", &P::dmis_goto,
+                {{"plain", DmisGoto::plain, "GOTO/x,y,z."}, {"cart", DmisGoto::cart, "GOTO/CART,x,y,z."}},
+                "The spelling of moves in a DMIS program of the plan.")
+        .param("dmis-decimals", &P::dmis_decimals,
+               "Decimals of coordinates in a DMIS program of the plan. `auto` is 4, or as many as keep 1e-4 of the "
+               "radius.",
+               at_most(DmisOptions::most_decimals), word("auto"))
         .metric("touches", Unit::count, "Touches, including those that cannot be made.", headline)
         .metric("assumed", Unit::count,
                 "Touches at an edge with a surface on one side only; a right angle is assumed there.")

@@ -22,8 +22,11 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/topology.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/dmis/header.hpp"
 #include "scanmill/geometry/spatial/direction.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
+#include "scanmill/io/mapped_file.hpp"
 
 namespace scanmill {
 
@@ -105,6 +108,24 @@ Settings settings_of(const ProbePlannerParams& params) {
     const auto takes = [&](Features kind) { return params.features == Features::all || params.features == kind; };
     settings.lines = {takes(Features::creases), takes(Features::holes), takes(Features::boundaries)};
     return settings;
+}
+
+DmisOptions dmis_options(const ProbePlannerParams& params, LengthUnit unit) {
+    DmisOptions options;
+    options.moves = params.dmis_goto;
+    if (params.dmis_decimals) {
+        if (*params.dmis_decimals > DmisOptions::most_decimals)
+            throw Error("dmis-decimals must be from 0 to {}; it is {}", DmisOptions::most_decimals,
+                        *params.dmis_decimals)
+                .hint("auto keeps 1e-4 of the radius");
+        options.decimals = *params.dmis_decimals;
+    }
+    if (params.dmis_header)
+        with_file_name(*params.dmis_header, [&] {
+            options.header = without_byte_order_mark(MappedFile(*params.dmis_header).bytes());
+            dmis::require_header(options.header, unit);
+        });
+    return options;
 }
 
 /// Returns the mesh relative to the origin of the features.
@@ -388,6 +409,7 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
                                  const ProbePlannerParams& params, Context& context) {
     const Settings settings = settings_of(params);
     require_same_frame(features.frame, "the features are", mesh.frame, "the mesh");
+    DmisOptions dmis = dmis_options(params, features.frame.unit);
     const TriangleMesh part = mesh_beside(mesh, features.frame);
     require_outward(mesh);
     const Machine machine(part, settings.probe, context.threads());
@@ -420,6 +442,7 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
     plan.stylus_radius = settings.probe.stylus_radius;
     plan.stylus_length = settings.probe.stylus_length;
     plan.machine_axis = settings.probe.axis;
+    plan.dmis = std::move(dmis);
     std::vector<TouchLine> lines;
     for (const Chain& chain : references.chains) {
         TouchLine line{chain.closed, {}};

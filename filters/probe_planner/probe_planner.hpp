@@ -5,6 +5,7 @@
 ///
 /// Source: Wang 2006, chapter 5; both faces in closed form, collisions, order and the pairing of lines are our own.
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,6 +49,14 @@ struct ProbePlannerParams {
     /// Number of touches of each reference point, 1 or 2. Two touches come from both sides of the bisector and together
     /// measure the edge exactly. 2 excludes `approach`.
     u32 directions = 1;
+    /// A text file with the header of a DMIS program of the plan, with the placeholders of formats/dmis/header.hpp. If
+    /// absent, the default header.
+    std::optional<std::filesystem::path> dmis_header;
+    /// The spelling of moves in a DMIS program of the plan.
+    DmisGoto dmis_goto = DmisGoto::plain;
+    /// Decimals of coordinates in a DMIS program of the plan; at most DmisOptions::most_decimals. If absent, as many as
+    /// keep 1e-4 of the radius, and at least 4.
+    std::optional<u32> dmis_decimals;
 };
 
 struct ProbePlannerResult {
@@ -99,7 +108,8 @@ struct ProbePlannerResult {
 ///       Doubts the result if no touch can be made, with a way out.
 ///
 /// Throws Error: a parameter out of range; features and mesh in different units or named frames; a mesh without
-/// triangles or with a vertex that is not finite; a closed mesh with a negative volume; features as in
+/// triangles or with a vertex that is not finite; a file of a DMIS header that cannot be read, or that
+/// dmis::require_header() refuses; a closed mesh with a negative volume; features as in
 /// find_reference_points(); lines of which every reference point is farther than radius + scanner_error + 1.5 segment
 /// lengths from the mesh.
 ///

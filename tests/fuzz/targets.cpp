@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 18> table{{
+    static constexpr std::array<FuzzTarget, 19> table{{
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -17,6 +17,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"obj", [](std::string_view bytes) { return read_scan("obj", bytes); }},
         {"ptx", [](std::string_view bytes) { return read_scan("ptx", bytes); }},
         {"las", [](std::string_view bytes) { return read_scan("las", bytes); }},
+        {"dmi", [](std::string_view bytes) { return read_scan("dmi", bytes); }},
         {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
         {"png", [](std::string_view bytes) { return read_scan("png", bytes); }},
         {"workflow", check_workflow_text},

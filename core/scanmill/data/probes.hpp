@@ -8,6 +8,7 @@
 /// normals n1 (left of e) and n2 (right of e). Then u = cos phi n0 - sin phi (e x n0): a positive phi leans towards n1.
 
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -136,6 +137,32 @@ constexpr auto fields(const ProbeMove*) {
         field("points", &ProbeMove::points, "The ball's centre, in world coordinates.").means(Meaning::position)};
 }
 
+/// The spelling of a DMIS program's moves.
+enum class DmisGoto : u8 {
+    plain,  ///< GOTO/x,y,z
+    cart  ///< GOTO/CART,x,y,z
+};
+constexpr std::array<std::string_view, 2> names_of(const DmisGoto*) { return {"plain", "cart"}; }
+
+/// How the plan is written as a DMIS program (see dmis_format() in formats/common/built_in.hpp).
+struct DmisOptions {
+    static constexpr u32 auto_decimals = ~u32(0);
+    static constexpr u32 most_decimals = 12;
+
+    std::string header;  ///< used in place of the default header, with its placeholders; empty: the default
+    DmisGoto moves = DmisGoto::plain;
+    u32 decimals = auto_decimals;  ///< of coordinates; at most most_decimals
+
+    bool operator==(const DmisOptions&) const = default;
+};
+constexpr auto fields(const DmisOptions*) {
+    using T = DmisOptions;
+    return std::tuple{
+        field("header", &T::header, "The text of the header; null for the default header.").nullable(),
+        field("goto", &T::moves, "The spelling of moves."),
+        field("decimals", &T::decimals, "Decimals of coordinates; null if the ball's radius decides.").nullable()};
+}
+
 struct ProbePlan {
     Frame frame;
     /// In the order of the lines; the two touches of one reference point follow one another.
@@ -151,6 +178,7 @@ struct ProbePlan {
     double stylus_length = 0;  ///< from the ball's centre along the machine's axis
     /// a: the unit vector from the ball's centre along the stylus.
     Vec3 machine_axis = Vec3::UnitZ();
+    DmisOptions dmis;
 };
 constexpr auto fields(const ProbePlan*) {
     using T = ProbePlan;
@@ -163,6 +191,7 @@ constexpr auto fields(const ProbePlan*) {
         field("stylus-radius", &T::stylus_radius).means(Meaning::length),
         field("stylus-length", &T::stylus_length).means(Meaning::length),
         field("machine-axis", &T::machine_axis, "From the ball's centre along the stylus.").means(Meaning::direction),
+        field("dmis", &T::dmis, "How the plan is written as a DMIS program.").optional(),
         field("touches", &T::touches),
         field("moves", &T::moves)};
 }

@@ -63,7 +63,7 @@ std::span<const Format> formats() {
     static const std::vector<Format> table = [] {
         std::vector<Format> rows{ply_format(), stl_format(), off_format(), obj_format()};
         std::ranges::move(text_formats(), std::back_inserter(rows));
-        for (const auto& format : {probes_csv_format, ptx_format, las_format, e57_format, json_format})
+        for (const auto& format : {probes_csv_format, ptx_format, las_format, e57_format, dmis_format, json_format})
             rows.push_back(format());
         std::ranges::move(module_formats(), std::back_inserter(rows));
         return rows;

@@ -3,7 +3,7 @@
 ///
 ///     {"scanmill": 1, "unit": "mm", "frame": "machine",
 ///      "radius": 2, "scanner-error": 1, "clearance": 2, "stylus-radius": 1.2, "stylus-length": 40,
-///      "machine-axis": [0, 0, 1],
+///      "machine-axis": [0, 0, 1], "dmis": {"header": null, "goto": "cart", "decimals": 6},
 ///      "touches": [{"touch": 0, "feature": 3, "point": [0, 0, 0], "tangent": [0, 1, 0], "left-normal": [0, 0, 1],
 ///                   "right-normal": [1, 0, 0], "interior-angle": 1.57, "assumed": false, "phi-min": -0.26,
 ///                   "phi-max": 0.26, "phi-known-min": null, "phi-known-max": null, "phi": 0,
@@ -14,7 +14,9 @@
 /// Points are world coordinates, angles radians. `reason` is none, concave, too-narrow, too-tilted or obstructed;
 /// `contact` is none, edge, elsewhere or missed; `type` is clearance, approach or retract; `touch` of a move is a row
 /// of `touches`. Undefined values are null: a range without directions, and the direction and the order of a touch that
-/// is not made. `unit` and `frame` are null if unknown. Numbers are read back bit for bit.
+/// is not made. `dmis` is absent if a DMIS program of the plan has the default header, plain moves and as many decimals
+/// as the radius needs; `header` and `decimals` are null for these defaults. `unit` and `frame` are null if unknown.
+/// Numbers are read back bit for bit.
 #include "scanmill/data/probes.hpp"
 
 #include <algorithm>

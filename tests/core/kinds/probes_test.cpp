@@ -58,6 +58,7 @@ ProbePlan plan() {
     plan.stylus_radius = 1.2;
     plan.stylus_length = 40;
     plan.machine_axis = Vec3(0, 0.6, 0.8);
+    plan.dmis = {"UNITS/{unit}\n", DmisGoto::cart, 6};
     return plan;
 }
 
@@ -110,6 +111,7 @@ void expect_equal(const ProbePlan& a, const ProbePlan& b) {
                             &ProbePlan::stylus_radius, &ProbePlan::stylus_length})
         expect_same_bits(a.*size, b.*size);
     expect_same_bits(a.machine_axis, b.machine_axis);
+    EXPECT_EQ(a.dmis, b.dmis);
 }
 
 TEST(Probes, AsJsonText_AreReadBackBitForBit) { expect_equal(plan_of(parse_document(json_of(plan()).dump())), plan()); }
@@ -228,6 +230,8 @@ TEST(ProbesRefuse, BrokenJson) {
     EXPECT_THAT(refusal([](Json& j) { j["machine-axis"] = {0, 0, 2}; }), HasSubstr("'machine-axis' has the length 2"));
     EXPECT_THAT(refusal([](Json& j) { j["moves"][0]["touch"] = 2u; }), HasSubstr("move 0 names touch 2; there are 2"));
     EXPECT_THAT(refusal([](Json& j) { j["moves"][0]["type"] = "jump"; }), HasSubstr("'moves[0].type' is 'jump'"));
+    EXPECT_THAT(refusal([](Json& j) { j["dmis"]["goto"] = "polar"; }), HasSubstr("'dmis.goto' is 'polar'"));
+    EXPECT_THAT(refusal([](Json& j) { j["dmis"]["decimals"] = -1; }), HasSubstr("'dmis.decimals' is not a whole"));
     EXPECT_THAT(refusal([](Json& j) { j["moves"][1] = 1; }), HasSubstr("'moves[1]' is not an object"));
     EXPECT_THAT(refusal([](Json& j) { j["touch"] = 1; }),
                 AllOf(HasSubstr("'touch' is unknown"), HasSubstr("did you mean 'touches'")));

@@ -125,6 +125,28 @@ Format ptx_format();
 /// Source: ASPRS, LAS specification 1.4 revision 15; its earlier versions 1.0 to 1.3.
 Format las_format();
 
+/// DMIS, the language of coordinate measuring machines (ISO 22093), the part of version 5.2 that touches need. A plan
+/// is written as a program; the results of a machine are read as points. The syntax is known from public programs, not
+/// from the standard's text.
+///
+/// Written (probes): DMISMN, FILNAM, the header (see dmis/header.hpp), and for each touch that is made, in their order:
+/// GOTO for the points of its clearance move, F(label)=FEAT/POINT,CART with the reference point T and the approach u,
+/// MEAS, PTMEAS, ENDMES, OUTPUT/FA(label) and GOTO back to the start. Then ENDFIL. GOTO has positions of the ball's
+/// centre. A label is P and the number of the touch, with six digits at least; two directions of one reference point
+/// end with A and B. Coordinates have the plan's number of decimals, or as many as keep 1e-4 of the ball's radius, four
+/// at least; directions have four at least. Lines have at most 80 ASCII characters. A comment counts the touches that
+/// are not made; they are left out with a warning. A plan in micrometres is written in millimetres, with a warning. A
+/// plan without a unit, without touches that are made, or without a clearance move to each of them is an Error.
+///
+/// Read (points): FA(label)=FEAT/POINT,CART,x,y,z,i,j,k, in any case, with the unit of UNITS, which must come first.
+/// Columns: `touch` (uint32), the number that the label's last digits spell, and `approach` (3 × float64), (i, j, k)
+/// scaled to length 1. Other statements and bytes that are not ASCII are passed over; one warning counts and names
+/// them. Statements of programs are passed over silently. A file that does not end with ENDFIL gives a warning. An
+/// Error: no such point; no UNITS, or two that differ; a measurement or a result without its feature in a file with
+/// features; a sensor other than PROBE; numbers that are missing or not finite; a direction whose length is not 1
+/// within 1 %; a file that ends within a statement.
+Format dmis_format();
+
 /// JSON: values of every kind that has a JSON form (see kinds/kind.hpp). A file is recognised by the JSON member of its
 /// kind.
 Format json_format();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <ranges>
 
 namespace scanmill {
@@ -46,15 +47,20 @@ std::string plain(std::string_view name) {
     return text;
 }
 
-/// The indices of the wanted names, in that order; empty unless each of them occurs exactly once.
-Indices indices_of(std::span<const std::string> names, std::initializer_list<std::string_view> wanted) {
+/// The indices of the names for which is_name(name, wanted) holds, in the order of `wanted`; empty unless each of them
+/// occurs exactly once.
+Indices indices_of(std::span<const std::string> names, std::initializer_list<std::string_view> wanted, auto is_name) {
     Indices indices;
     for (const std::string_view name : wanted) {
-        const auto has_name = [&](const std::string& candidate) { return plain(candidate) == name; };
+        const auto has_name = [&](const std::string& candidate) { return is_name(candidate, name); };
         if (std::ranges::count_if(names, has_name) != 1) return {};
         indices.push_back(static_cast<std::size_t>(std::ranges::find_if(names, has_name) - names.begin()));
     }
     return indices;
+}
+/// The same for plain names.
+Indices indices_of(std::span<const std::string> names, std::initializer_list<std::string_view> wanted) {
+    return indices_of(names, wanted, [](const auto& candidate, auto name) { return plain(candidate) == name; });
 }
 
 std::vector<std::string_view> tokens_of_row(TextCursor row) {
@@ -166,6 +172,13 @@ public:
         unite<double>("normal", parts);
     }
 
+    void unite_approach(const Indices& parts) {
+        if (parts.empty() || has_column("approach")) return;
+        if (!are_unit_normals(values(parts[0]), values(parts[1]), values(parts[2])))
+            warn(on_warning_, "not all directions ({}) have unit length", list(parts));
+        unite<double>("approach", parts);
+    }
+
     void unite_colour(const Indices& parts) {
         if (parts.empty() || has_column("colour")) return;
         const auto is_byte = [](double value) { return value >= 0 && value <= 255 && value == std::trunc(value); };
@@ -242,6 +255,7 @@ ColumnTable text_columns(std::vector<std::string> names, std::vector<Array<doubl
     const Indices named_normal = first_of({{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}});
     const Indices named_colour =
         first_of({{"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"r", "g", "b"}, {"red", "green", "blue"}});
+    const Indices named_approach = indices_of(names, {"i", "j", "k"}, std::equal_to<>());
     const std::size_t width = values.size();
     const bool is_named = !names.empty();
     for (std::size_t i = names.size(); i < width; ++i) names.push_back("c" + std::to_string(i + 4));
@@ -250,6 +264,7 @@ ColumnTable text_columns(std::vector<std::string> names, std::vector<Array<doubl
     TextTable table(std::move(names), std::move(values), on_warning);
     if (is_named) {
         table.unite_normal(named_normal);
+        table.unite_approach(named_approach);
         table.unite_colour(named_colour);
     } else if (width == 3 && table.has_unit_normals()) {
         table.unite_normal({0, 1, 2});

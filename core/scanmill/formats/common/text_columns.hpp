@@ -51,8 +51,9 @@ bool is_row_of_numbers(TextCursor row);
 
 /// Columns from the numbers after x, y and z.
 ///
-/// With names: nx ny nz or normal x, y, z become `normal` (float64), with a warning unless all have unit length. r g b
-/// or red green blue, optionally with a or alpha, become `colour` (uint8) if every number is whole and from 0 to 255.
+/// With names: nx ny nz or normal x, y, z become `normal` (float64), with a warning unless all have unit length.
+/// Columns that are called exactly i, j and k become `approach` (float64), with the same warning. r g b or red green
+/// blue, optionally with a or alpha, become `colour` (uint8) if every number is whole and from 0 to 255.
 /// If the highest number is 1, the colours stay single columns, with a warning, because 1 may be the byte 1 or a full
 /// channel. So do colours that are not bytes. Every other column keeps its name (float64).
 ///
