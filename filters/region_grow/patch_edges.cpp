@@ -51,7 +51,8 @@ std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& ch
     return edges;
 }
 
-void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges) {
+void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges,
+                     std::span<const Edge> more) {
     const FeatureGraph& graph = lines.graph;
     const auto vertex_at = [&](u32 row) { return lines.mesh_vertices[graph.vertices[row]]; };
     Array<Edge> sharp;
@@ -63,7 +64,9 @@ void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::spa
     }
     const auto& vertex = finished.vertex_of_point;
     for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex[edge.from], vertex[edge.to]));
+    sharp.insert(sharp.end(), more.begin(), more.end());
     std::ranges::sort(sharp);
+    sharp.erase(std::unique(sharp.begin(), sharp.end()), sharp.end());
     finished.mesh.sharp_edges = std::move(sharp);
 }
 

@@ -23,9 +23,10 @@ struct PatchEdge {
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context);
 
-/// Sets the mesh's sharp edges: the creases of `lines`, and the patch edges. Pre: `lines` belong to `finished`. Cost:
-/// linear, and a sort of the sharp edges.
-void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges);
+/// Sets the mesh's sharp edges: the creases of `lines`, the patch edges and `more`. Pre: `lines` belong to `finished`.
+/// Cost: linear, and a sort of the sharp edges.
+void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges,
+                     std::span<const Edge> more);
 
 /// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch. This is the
 /// mean normal of the triangles at the point `beyond`. Pre: `features` belong to `finished`. Cost: linear, and a search

@@ -11,13 +11,19 @@ SCANMILL_FILTER() {
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties(
             "Among equally good points, the first along a space-filling curve through the box is used. Duplicates "
-            "count as the first row, with the smallest bin-size and the first normal by x, y, z.")
+            "count as the first row, with the smallest bin-size and the first normal by x, y, z. Of crossing segments "
+            "of "
+            "equal uncertainty, the later one yields.")
         .not_finite(
             "Coordinates: refused; the message gives their number and the first one. Normals: replaced by those of the "
             "neighbourhood.")
         .in<PointCloud>(
             "points", "Thinned points, of even density at least locally. The columns `normal` and `bin-size` are used.")
         .made_by("voxel-thin")
+        .in<FeatureGraph>("lines",
+                          "Measured edge lines. Their segments become sharp edges of the mesh, whatever the scan says "
+                          "nearby; long ones are divided.",
+                          optional, by_name)
         .out<TriangleMesh>("mesh", "An oriented manifold over the points used, with its sharp edges.")
         .out<FeatureGraph>("features",
                            "Outer boundaries, holes and creases with the normals on both sides, and corners.")
@@ -73,8 +79,19 @@ SCANMILL_FILTER() {
         .metric("without-area", Unit::count, "Triangles without area, assigned to a neighbour's plane.",
                 smaller_is_better)
         .metric("relaxed-triangles", Unit::count, "Triangles formed under relaxed limits.")
+        .metric("lines", Unit::count, "Segments of `lines` that are edges of the mesh, divided ones in parts.")
+        .metric("near-lines", Unit::count, "Scan points left out because a segment of `lines` is near.")
+        .metric("unsupported", Unit::count, "Segments of `lines` without scan points near them, left out.",
+                smaller_is_better)
+        .metric("crossing", Unit::count, "Segments of `lines` left out because they cross a more certain one.",
+                smaller_is_better)
+        .metric("missing-lines", Unit::count, "Segments of `lines` that the surface does not contain.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            RegionGrowResult result = region_grow(inputs.get<PointCloud>("points"), params, context);
+            const auto& points = inputs.get<PointCloud>("points");
+            const auto* lines = inputs.find<FeatureGraph>("lines");
+            RegionGrowResult result =
+                lines ? region_grow(points, *lines, params, context) : region_grow(points, params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("features", std::move(result.features));
         });
 }

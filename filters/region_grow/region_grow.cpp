@@ -8,9 +8,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "region_grow/beside_lines.hpp"
 #include "region_grow/boundaries.hpp"
 #include "region_grow/given_normals.hpp"
 #include "region_grow/growth.hpp"
+#include "region_grow/line_edges.hpp"
 #include "region_grow/patch_edges.hpp"
 #include "region_grow/search_radii.hpp"
 #include "scanmill/base/elementary.hpp"
@@ -21,6 +23,7 @@
 #include "scanmill/geometry/distance/sides.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
+#include "scanmill/geometry/growing/restored_edges.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
@@ -210,11 +213,20 @@ void doubt_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Con
                     thin.voxel, unit));
 }
 
-}  // namespace
+/// The params with `start` as a row of the prepared cloud.
+RegionGrowParams for_prepared(RegionGrowParams params, const PreparedLines& lines) {
+    if (!params.start) return params;
+    const auto row = std::ranges::lower_bound(lines.rows, *params.start);
+    if (row == lines.rows.end() || *row != *params.start)
+        throw Error("start is row {}, a point that is left out because a line is near", *params.start)
+            .hint("start at another point, or leave start at `auto`");
+    params.start = static_cast<u32>(row - lines.rows.begin());
+    return params;
+}
 
-RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
-    require_finite(cloud.positions.span());
-    require_in_range(params, cloud.size());
+/// `lines`: nullptr, or the lines whose cloud is `cloud`.
+RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const RegionGrowParams& params,
+                      Context& context) {
     const DistinctPoints points = distinct_points_of(cloud.positions.span());
     growing::require_area(points, cloud.size());
     context.progress(0.05);
@@ -223,11 +235,22 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.check_cancelled();
     context.progress(0.3);
     PointNormals normals = principal_normals(points, neighbourhoods, context.threads());
+    FixedEdges edges;
+    std::optional<BesideLines> beside;
+    if (lines) {
+        edges = fixed_edges_of(*lines, points);
+        beside.emplace(points, edges, context.threads());
+        beside->set_normals(normals, edges, context.threads());
+    }
     const GivenNormals given = take_given_normals(cloud, points, neighbourhoods, normals, context);
     const bool oriented = given.signs_count;
-    SearchRadii radii = search_radii(cloud, points, neighbourhoods, normals, params, context);
+    SearchRadii radii = beside ? beside->radii_of_all(search_radii(cloud, beside->points(), beside->neighbourhoods(),
+                                                                   beside->normals_of(normals), params, context))
+                               : search_radii(cloud, points, neighbourhoods, normals, params, context);
+    if (oriented) average_normals_at(edges, neighbourhoods, normals);
     Surface surface(points, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
                     oriented);
+    surface.fixed_edges = std::move(edges);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);
@@ -251,6 +274,9 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
         result.removed_triangles += narrow.replaced;
     } else
         result.removed_triangles = remove_extra_fans(surface);
+    if (lines)
+        result.removed_triangles +=
+            restore_fixed_edges(surface, largest_empty_circle * limits.back().radius_factor, context);
     PointChooser chooser(surface, score);
     const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front(), context);
     context.check_cancelled();
@@ -260,26 +286,27 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
 
     FinishedMesh finished = finish_mesh(cloud, surface);
     if (!oriented && given.doubtful.empty()) face_outwards(finished.mesh, context);
+    finished.mesh.sharp_edges = segments_in(finished, surface);
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     feature_params.noise = params.noise;
-    FeatureLines lines = find_features(finished.mesh, feature_params, context);
-    const std::size_t by_themselves = creases_of_triangles(finished.mesh, feature_params, lines, context);
-    set_sharp_edges(finished, lines, patch_edges);
-    set_normals_beyond(lines.graph, finished, patch_edges);
+    FeatureLines found = find_features(finished.mesh, feature_params, context);
+    const std::size_t by_themselves = creases_of_triangles(finished.mesh, feature_params, found, context);
+    set_sharp_edges(finished, found, patch_edges, segments_in(finished, surface));
+    set_normals_beyond(found.graph, finished, patch_edges);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
     result.passes = std::move(surface.passes);
-    result.features = std::move(lines.graph);
-    result.loops = lines.counts.holes + lines.counts.boundaries;
-    result.holes = lines.counts.holes;
+    result.features = std::move(found.graph);
+    result.loops = found.counts.holes + found.counts.boundaries;
+    result.holes = found.counts.holes;
     const ThinParts thin = params.search_radius ? ThinParts() : find_thin_parts(surface, components, context);
     result.thin_loops = thin.loops;
-    result.creases = lines.counts.creases;
-    result.noise = lines.noise;
-    result.corners = lines.counts.corners;
-    result.ambiguous_loops = lines.counts.ambiguous;
-    result.triangles_without_area = lines.counts.without_area;
+    result.creases = found.counts.creases;
+    result.noise = found.noise;
+    result.corners = found.counts.corners;
+    result.ambiguous_loops = found.counts.ambiguous;
+    result.triangles_without_area = found.counts.without_area;
     result.patch_edges = patch_edges.size();
     result.components = components.count;
     result.duplicates = points.repeats.size();
@@ -287,10 +314,32 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     report_metrics(result, context);
     report_unused(result, surface, context);
     doubt_roughness(result, by_themselves, context);
-    for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
+    for (std::string& sentence : doubts(found.counts)) context.warn(std::move(sentence));
     doubt_seams(surface, context);
     doubt_thin_parts(result, thin, context);
+    if (lines) report_lines(*lines, surface, result, context);
     context.progress(1);
+    return result;
+}
+
+void require_valid(const PointCloud& cloud, const RegionGrowParams& params) {
+    require_finite(cloud.positions.span());
+    require_in_range(params, cloud.size());
+}
+
+}  // namespace
+
+RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
+    require_valid(cloud, params);
+    return grow(cloud, nullptr, params, context);
+}
+
+RegionGrowResult region_grow(const PointCloud& cloud, const FeatureGraph& lines, const RegionGrowParams& params,
+                             Context& context) {
+    require_valid(cloud, params);
+    const PreparedLines prepared = prepare_lines(cloud, lines, context);
+    RegionGrowResult result = grow(prepared.cloud, &prepared, for_prepared(params, prepared), context);
+    for (u32& row : result.rows) row = prepared.rows[row];
     return result;
 }
 

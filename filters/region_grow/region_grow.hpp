@@ -72,7 +72,8 @@ struct RegionGrowResult {
     /// Boundaries, holes and creases of the mesh with the normals on both sides. Beyond a boundary that is a sharp
     /// edge, the normals are those of the other patch.
     FeatureGraph features;
-    /// Per vertex its row in the cloud, ascending.
+    /// Per vertex its row in the cloud, ascending. Points of lines that are not in the cloud count on from its size, by
+    /// x, y, z.
     Array<u32> rows;
     /// Per triangle: 0 if formed under the given limits, 1 to 3 if formed under relaxed ones, 4 if it closes a hole.
     Array<u8> passes;
@@ -90,6 +91,11 @@ struct RegionGrowResult {
     double noise = 0;
     /// Triangles removed again, because a vertex had several fans or to close a hole.
     std::size_t removed_triangles = 0;
+    /// Scan points left out beside lines, and segments of lines that are edges of the mesh.
+    std::size_t near_lines = 0, line_segments = 0;
+    /// Segments of lines that are not: without support by the scan, in favour of a segment that they cross, and those
+    /// that the surface does not contain. See lines.hpp.
+    std::size_t unsupported_lines = 0, crossing_lines = 0, missing_lines = 0;
     /// Loops whose area does not decide whether they are holes, and triangles without area. find_features() counts
     /// both.
     std::size_t ambiguous_loops = 0, triangles_without_area = 0;
@@ -132,5 +138,20 @@ struct RegionGrowResult {
 /// thin parts. Also doubts it if the triangles by themselves make more than one crease per 20 edges, of more than
 /// 10,000 edges.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
+
+/// Grows a surface that contains the segments of `lines` as edges.
+///
+/// prepare_lines() in lines.hpp joins the points of the lines to the cloud, leaves out scan points beside them, divides
+/// long segments and leaves out segments that cross others or have no scan points near them. No triangle may cross or
+/// cover a segment. At segments, neither max_normal_angle nor the normals of points limit the angle between triangles.
+/// Segments that the growth misses are restored by restore_fixed_edges() in restored_edges.hpp. Each part of a divided
+/// segment counts as a segment.
+///
+/// Post: every segment that is not counted as unsupported, crossing or missing is a sharp edge of the mesh. It is part
+/// of a crease in `features`, or of a boundary if it has one triangle. A warning or doubt gives number, position and
+/// reason for the others. The result does not depend on the order of the lines, except for ties between crossing ones.
+/// Throws Error also as prepare_lines() does, and if the point `start` is left out.
+RegionGrowResult region_grow(const PointCloud& cloud, const FeatureGraph& lines, const RegionGrowParams& params,
+                             Context& context);
 
 }  // namespace scanmill

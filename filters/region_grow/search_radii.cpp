@@ -51,9 +51,13 @@ public:
     }
 
     double by_density(u32 point, std::vector<double>& buffer) const {
+        return std::sqrt(voxels_per_squared_edge) * spacing(point, buffer);
+    }
+    /// The spacing of a square grid of the same density.
+    double spacing(u32 point, std::vector<double>& buffer) const {
         buffer.clear();
         for (u32 other : neighbourhoods_.of(point)) buffer.push_back(sizes_[other]);
-        return std::sqrt(voxels_per_squared_edge) * std::min(sizes_[point], largest_of_median * median(buffer));
+        return std::min(sizes_[point], largest_of_median * median(buffer));
     }
     /// The given size, limited by the sizes of the neighbours; 0 if none is given.
     double given(std::span<const double> given_sizes, u32 point, std::vector<double>& buffer) const {
@@ -78,6 +82,16 @@ private:
 };
 
 }  // namespace
+
+Array<double> local_spacings(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, unsigned threads) {
+    const SizeEstimates estimates(points, neighbourhoods, {}, threads);
+    Array<double> spacings(points.size());
+    for_each_chunk(threads, points.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> buffer;
+        for (std::size_t i = begin; i < end; ++i) spacings[i] = estimates.spacing(static_cast<u32>(i), buffer);
+    });
+    return spacings;
+}
 
 SearchRadii automatic_radii(const DistinctPoints& points, const Neighbourhoods& neighbourhoods,
                             std::span<const Vec3> normals, std::span<const float> variation,

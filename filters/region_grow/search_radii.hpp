@@ -39,6 +39,10 @@ struct SearchRadii {
     Array<double> too_dense;
 };
 
+/// Per point the spacing of a square grid that is as dense as the points around it: the estimate of the file comment.
+/// Cost: linear. Pre: at least two points.
+Array<double> local_spacings(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, unsigned threads);
+
 /// `given_sizes`: per point the size in the column, finite, 0 if unknown; or empty. Cost: linear.
 SearchRadii automatic_radii(const DistinctPoints& points, const Neighbourhoods& neighbourhoods,
                             std::span<const Vec3> normals, std::span<const float> variation,

@@ -103,7 +103,8 @@ void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limi
     const double largest = largest_empty_circle * radius;
     const double cotangent_squared = score_ == Score::midpoint ? std::numeric_limits<double>::infinity()
                                                                : std::max(0.0, largest * largest / half_squared - 1);
-    const double least_squared_cosine = limits.normal_cosine * std::abs(limits.normal_cosine);  // with its sign
+    const double normal_cosine = least_cosine_across(from, to, limits.normal_cosine);
+    const double least_squared_cosine = normal_cosine * std::abs(normal_cosine);  // with its sign
     candidates_.clear();
     boundary_points_.clear();
     for (u32 point : near_) {
@@ -265,7 +266,8 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
     const Triangle triangle{from, point, to};
     if (surface_.states[point] == PointState::interior || !has_angles_of(surface_, triangle, limits.least_sine))
         return false;
-    if (!agrees_with_points(surface_, triangle, candidate.normal, limits.point_cosine, limits.sharp_cosine))
+    if (!agrees_with_points(surface_, triangle, candidate.normal, limits.point_cosine, limits.sharp_cosine) ||
+        crosses_fixed_edge(surface_, triangle, candidate.normal, near_))
         return false;
     if (is_seed) return true;
     const Fans& fans = surface_.fans;
@@ -281,7 +283,12 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
 
 bool PointChooser::agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const {
     const u32 third = surface_.fans.left_of(to, from);
-    return third == invalid_index || surface_.facet_normal(to, from, third).dot(normal) >= least_cosine;
+    return third == invalid_index ||
+           surface_.facet_normal(to, from, third).dot(normal) >= least_cosine_across(from, to, least_cosine);
+}
+
+double PointChooser::least_cosine_across(u32 from, u32 to, double usual) const {
+    return surface_.fixed_edges.contains(from, to) ? fold_cosine : usual;
 }
 
 bool PointChooser::overlaps_others(const Triangle& triangle, const Vec3& normal) {

@@ -113,6 +113,8 @@ private:
     /// Tests the limits. Together with sectors_are_free(), these are all tests that do not depend on other candidates.
     bool satisfies_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed) const;
     bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const;
+    /// The least cosine between the normals of the two triangles of an edge: `usual`, or at fixed edges fold_cosine.
+    double least_cosine_across(u32 from, u32 to, double usual) const;
     /// Whether a rejected candidate lies in the triangle, or the boundary crosses it.
     bool overlaps_others(const Triangle& triangle, const Vec3& normal);
     bool is_neighbour(u32 point, u32 vertex) const;

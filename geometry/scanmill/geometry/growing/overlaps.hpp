@@ -7,6 +7,7 @@
 /// the coordinates as given. So points on one line of a grid are collinear in every test.
 
 #include <Eigen/Geometry>
+#include <span>
 
 #include "scanmill/geometry/growing/surface.hpp"
 
@@ -32,10 +33,18 @@ bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, con
 /// The unit vector of the sum of `more` and the unit normals of the vertex's triangles; zero if the sum is zero.
 Vec3 fan_normal(const Surface& surface, u32 vertex, const Vec3& more);
 
+/// Whether the triangle crosses or covers a part of a fixed edge, projected along the triangle's normal. Only fixed
+/// edges at the triangle's corners and at the points `near` are tested. An edge without a common corner counts only if
+/// an end is within half the triangle's longest edge of its plane, or if its ends are on two sides of the plane. An
+/// edge at a corner counts only if it is less than 64 degrees from the plane. Edges of the triangle do not count.
+bool crosses_fixed_edge(const Surface& surface, const Triangle& triangle, const Vec3& normal,
+                        std::span<const u32> near);
+
 /// Whether sector_is_free() holds at every corner of the triangle that is a vertex of the surface. `normal`: the
 /// triangle's normal. The axis of a corner is its point's normal or, with `along_fans`, fan_normal() with the
 /// triangle's normal. The test along the fans is slower, but it is also right where the point's normal does not fit the
-/// surface, as at edges and tips.
+/// surface, as at edges and tips. At ends of fixed edges, the axis bisects the triangle's normal and the mean normal of
+/// the fan.
 bool sectors_are_free(const Surface& surface, const Triangle& triangle, const Vec3& normal, bool along_fans);
 
 /// Whether the closed triangle contains the point, projected along the normal.

@@ -9,6 +9,7 @@
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/geometry/growing/distinct_points.hpp"
+#include "scanmill/geometry/growing/fixed_edges.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 
 namespace scanmill::growing {
@@ -157,6 +158,9 @@ struct Surface {
     /// The power of two above the longest side of the points' box. Exact predicates use a point at this distance along
     /// a unit normal. With a shorter distance, the sum would lose digits of the normal.
     double axis_length;
+    /// Edges that the surface must contain. They are sharp: triangles at them and at their ends need not agree with
+    /// their neighbours' normals. Normally none.
+    FixedEdges fixed_edges;
 
     Fans fans;
     Array<PointState> states;
