@@ -66,9 +66,10 @@ SCANMILL_FILTER() {
                "default ones. {radius}, {diameter}, {unit}, {approach}, {retract}, {search} and {clearance} in it are "
                "replaced.",
                word("none"))
-        .choice("dmis-goto", &P::dmis_goto,
-                {{"plain", DmisGoto::plain, "GOTO/x,y,z."}, {"cart", DmisGoto::cart, "GOTO/CART,x,y,z."}},
-                "The spelling of moves in a DMIS program of the plan.")
+        .choice(
+            "dmis-goto", &P::dmis_goto,
+            {{"plain", DmisGoto::plain, "Moves as GOTO/x,y,z."}, {"cart", DmisGoto::cart, "Moves as GOTO/CART,x,y,z."}},
+            "The spelling of moves in a DMIS program of the plan.")
         .param("dmis-decimals", &P::dmis_decimals,
                "Decimals of coordinates in a DMIS program of the plan. `auto` is 4, or as many as keep 1e-4 of the "
                "radius.",
