@@ -88,13 +88,14 @@ private:
     void choose_decimals() {
         const double radius = plan_.radius;
         if (!(radius > 0) || !std::isfinite(radius))
-            throw Error("the plan's ball has the radius {}", number_text(radius)).hint("plan with probe-planner");
+            throw Error("the plan's ball has the radius {}", number_text(radius))
+                .hint("plan again with a radius above 0");
         decimals_ = plan_.dmis.decimals;
         if (decimals_ == DmisOptions::auto_decimals) decimals_ = auto_decimals(radius);
         if (decimals_ > DmisOptions::most_decimals)
             throw Error("the plan wants {} decimals in DMIS; at most {} are written", decimals_,
                         DmisOptions::most_decimals)
-                .hint("set dmis-decimals to auto");
+                .hint("null in the plan chooses them by the radius");
         if (!is_exact(decimals_, radius))
             warn(options_.on_warning, "coordinates have {} in DMIS; the last is {:.2g} of the ball's radius",
                  count_text(decimals_, "decimal", "decimals"), step_of(decimals_) / radius);
@@ -123,13 +124,13 @@ private:
             // Not a number if a component is none.
             if (!(std::abs(written(touch.approach, vector_decimals()).value.norm() - 1) <= unit_tolerance))
                 throw Error("the approach of touch {} has the length {:.6g}, not 1", touch.touch, touch.approach.norm())
-                    .hint("plan with probe-planner");
+                    .hint("an approach is a unit vector from the part to the probe; plan again");
         }
     }
 
     [[noreturn]] void throw_moves(u32 row, std::string_view defect) const {
         throw Error("{} to touch {} (row {} of the plan)", defect, plan_.touches[row].touch, row)
-            .hint("plan again with probe-planner: a machine must not move where nothing was checked");
+            .hint("plan again: a machine must not move where nothing was checked");
     }
 
     void require_writable(u32 row, const Vec3& point) const {
@@ -238,7 +239,7 @@ void write_program(const Value& value, OutputBuffer& out, const WriteOptions& op
     const ProbePlan& plan = *value.get<ProbePlan>();
     if (plan.frame.unit == LengthUnit::unknown)
         throw Error("the plan's unit is unknown, and a machine must not guess it")
-            .hint("declare the unit of the scan: `unit: mm` in the workflow's input, or --unit mm");
+            .hint("declare the unit of the scan, for example `unit: mm` of the input in the workflow, and plan again");
     if (plan.frame.unit == LengthUnit::micrometre) {
         warn(options.on_warning, "DMIS has no micrometres; the program is in mm");
         return write_program(in_unit(value, LengthUnit::millimetre), out, options);

@@ -208,8 +208,7 @@ private:
                  count_text(lines, "line is", "lines are"), longest_line, by_count(lines, "it was", "they were"));
         if (is_open_) warn(options_.on_warning, "the file does not end with ENDFIL: it may be incomplete");
         if (is_uncompensated_)
-            warn(options_.on_warning,
-                 "PRCOMP/OFF: the points are centres of the ball, not contacts (`reported: centre`)");
+            warn(options_.on_warning, "PRCOMP/OFF: the points are centres of the ball, not contacts");
     }
 
     struct Reference {
