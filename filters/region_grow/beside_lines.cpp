@@ -31,16 +31,6 @@ BesideLines::BesideLines(const DistinctPoints& all, const FixedEdges& edges, uns
             nearest_[point] = point_of_index[tree.nearest_to(all.positions[point], 1, buffer).front().index];
 }
 
-void BesideLines::set_normals(PointNormals& normals, const FixedEdges& edges, unsigned threads) const {
-    const PointNormals own = principal_normals(points_, *near_, threads);
-    for (u32 i = 0; i < number_.size(); ++i) {
-        normals.directions[number_[i]] = own.directions[i];
-        normals.variation[number_[i]] = own.variation[i];
-    }
-    for (u32 point = 0; point < nearest_.size(); ++point)
-        if (edges.at(point)) normals.variation[point] = 1;
-}
-
 PointNormals BesideLines::normals_of(const PointNormals& all) const {
     PointNormals own;
     for (u32 point : number_) {
@@ -58,16 +48,6 @@ SearchRadii BesideLines::radii_of_all(const SearchRadii& radii) const {
         all.by_density.push_back(radii.by_density[point]);
     }
     return all;
-}
-
-void average_normals_at(const FixedEdges& edges, const Neighbourhoods& neighbourhoods, PointNormals& normals) {
-    for (u32 point = 0; point < normals.directions.size(); ++point) {
-        if (!edges.at(point)) continue;
-        Vec3 sum = Vec3::Zero();
-        for (u32 other : neighbourhoods.of(point))
-            if (!edges.at(other)) sum += normals.directions[other];
-        if (sum.norm() > 0) normals.directions[point] = sum.normalized();
-    }
 }
 
 }  // namespace scanmill::growing

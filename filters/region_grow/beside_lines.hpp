@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Normals and search radii of the scan beside lines, where the points of lines must not count.
+/// Search radii of the scan beside lines, where the points of lines must not count.
 
 #include <optional>
 
@@ -9,8 +9,8 @@
 
 namespace scanmill::growing {
 
-/// The points of a cloud that are no ends of fixed edges. Points of lines have any density, so they count neither for
-/// the normals nor for the density of the scan.
+/// The points of a cloud that are not ends of fixed edges. Points of lines have any density, so they do not count for
+/// the density of the scan.
 class BesideLines {
 public:
     /// Throws Error if fewer than three points are left, or if they are on one line. Cost: O(n log n).
@@ -18,10 +18,6 @@ public:
 
     const DistinctPoints& points() const { return points_; }
     const Neighbourhoods& neighbourhoods() const { return *near_; }
-
-    /// Replaces the principal normals of points() by those without the ends of fixed edges. The ends keep their normal
-    /// and get a variation above tip_variation, so that triangles agree with any normal there. Cost: linear.
-    void set_normals(PointNormals& normals, const FixedEdges& edges, unsigned threads) const;
 
     /// The normals of points(), from those of all points.
     PointNormals normals_of(const PointNormals& all) const;
@@ -36,9 +32,5 @@ private:
     Array<u32> nearest_;
     std::optional<Neighbourhoods> near_;
 };
-
-/// Sets the normal of every end of a fixed edge to the mean of the normals of its neighbours that are none. Cost:
-/// linear.
-void average_normals_at(const FixedEdges& edges, const Neighbourhoods& neighbourhoods, PointNormals& normals);
 
 }  // namespace scanmill::growing

@@ -240,14 +240,15 @@ RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const
     if (lines) {
         edges = fixed_edges_of(*lines, points);
         beside.emplace(points, edges, context.threads());
-        beside->set_normals(normals, edges, context.threads());
+        // Triangles agree with any normal at tips.
+        for (u32 point = 0; point < points.size(); ++point)
+            if (edges.at(point)) normals.variation[point] = 1;
     }
     const GivenNormals given = take_given_normals(cloud, points, neighbourhoods, normals, context);
     const bool oriented = given.signs_count;
     SearchRadii radii = beside ? beside->radii_of_all(search_radii(cloud, beside->points(), beside->neighbourhoods(),
                                                                    beside->normals_of(normals), params, context))
                                : search_radii(cloud, points, neighbourhoods, normals, params, context);
-    if (oriented) average_normals_at(edges, neighbourhoods, normals);
     Surface surface(points, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
                     oriented);
     surface.fixed_edges = std::move(edges);
