@@ -18,6 +18,9 @@ SCANMILL_FILTER() {
                         "Measured touches with the column `approach`, from the part to the probe; if they exist, the "
                         "columns `touch`, `feature` and `uncertainty` are used.")
         .made_by("virtual-probe")
+        .in<ProbePlan>("plan",
+                       "The plan of the touches: it has the `feature` of each `touch`, which a machine's results lack.",
+                       optional, by_name)
         .out<PointCloud>("points", "Points of the edges: one of each pair of touches, one of every other touch.")
         .out<FeatureGraph>("features", "The touched lines of each `feature`, without normals.")
         .param("radius", &P::radius, "Radius of the probe's ball.", above(0), required)
@@ -49,7 +52,10 @@ SCANMILL_FILTER() {
         .metric("lone", Unit::count, "Touched points that are too far from their neighbours for a line.",
                 smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            ProbeCompensateResult result = probe_compensate(inputs.get<PointCloud>("points"), params, context);
+            const PointCloud& touches = inputs.get<PointCloud>("points");
+            const auto* plan = inputs.find<ProbePlan>("plan");
+            ProbeCompensateResult result =
+                probe_compensate(plan ? with_features(touches, *plan) : touches, params, context);
             return Outputs().set("points", std::move(result.points)).set("features", std::move(result.features));
         });
 }

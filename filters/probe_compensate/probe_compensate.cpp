@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -345,6 +346,28 @@ ProbeCompensateResult probe_compensate(const PointCloud& cloud, const ProbeCompe
     doubt_ratios(made, touches, context);
     report(result, context);
     context.progress(1);
+    return result;
+}
+
+PointCloud with_features(const PointCloud& touches, const ProbePlan& plan) {
+    if (touches.columns.find("feature")) return touches;
+    const Column* numbers = touches.columns.find("touch");
+    if (!numbers || numbers->components() != 1)
+        throw Error("the plan cannot name the lines: the touches have no column 'touch' with one number per row")
+            .hint("give the number of the reference point in a column 'touch', or no plan");
+    std::map<double, u32> feature_of;
+    for (const ProbeTouch& touch : plan.touches) feature_of.emplace(touch.touch, touch.feature);
+    Array<u32> features;
+    for (std::size_t row = 0; row < touches.size(); ++row) {
+        const auto found = feature_of.find(numbers->number(row));
+        if (found == feature_of.end())
+            throw Error("row {} is of touch {}, which is not in the plan of {} touches", row, numbers->number(row),
+                        plan.touches.size())
+                .hint("give the plan that the machine has measured");
+        features.push_back(found->second);
+    }
+    PointCloud result = touches;
+    result.columns.add(Column("feature", 1, Buffer<u32>(std::move(features))));
     return result;
 }
 

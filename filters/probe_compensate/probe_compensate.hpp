@@ -14,6 +14,7 @@
 
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/probes.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
 
@@ -86,5 +87,10 @@ struct ProbeCompensateResult {
 /// Metrics: `points`, `paired`, `single`, `unused`, `curved`, `lines`, `lone`.
 ProbeCompensateResult probe_compensate(const PointCloud& touches, const ProbeCompensateParams& params,
                                        Context& context);
+
+/// The touches with the column `feature`, read from the plan by their column `touch`: a machine's results have the
+/// number of the touch alone. Unchanged if they have the column. Throws Error without a column `touch` of whole
+/// numbers, and for a number that the plan does not have.
+PointCloud with_features(const PointCloud& touches, const ProbePlan& plan);
 
 }  // namespace scanmill

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/probe_compensate/cases.hpp"
+#include "support/thrown.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -116,6 +117,29 @@ TEST(ProbeCompensateLines, WithoutTheColumnFeature_ThereAreNone) {
     const Compensated result = compensated(cloud_of(along_y({0, 1, 2}), Columns::without_feature), with_radius(1));
     EXPECT_TRUE(result.features.polylines.empty());
     EXPECT_EQ(result.lone, 0u);
+}
+
+TEST(ProbeCompensateLines, APlanNamesTheLines_WhereTheTouchesHaveNumbersAlone) {
+    std::vector<Touch> touches;
+    for (int i = 0; i < 6; ++i) touches.push_back(touch_of(Vec3(0, i, 0), 0.3, 0, 2, 10 + i));
+    ProbePlan plan;
+    for (u32 i = 0; i < 6; ++i) {
+        plan.touches.emplace_back();
+        plan.touches.back().touch = 10 + i;
+        plan.touches.back().feature = i < 3 ? 4 : 7;
+    }
+    const PointCloud named = with_features(cloud_of(touches, Columns::without_feature), plan);
+    const std::span<const u32> features = named.columns.find("feature")->values<u32>();
+    EXPECT_THAT(std::vector<u32>(features.begin(), features.end()), testing::ElementsAre(4, 4, 4, 7, 7, 7));
+    EXPECT_EQ(compensated(named, with_radius(2)).features.polylines.size(), 2u);
+    // A column of the touches' own counts.
+    EXPECT_EQ(with_features(cloud_of(touches), plan).columns.find("feature")->number(0), 0);
+    plan.touches.pop_back();
+    const Error unknown = error_of([&] { with_features(cloud_of(touches, Columns::without_feature), plan); });
+    EXPECT_EQ(unknown.sentence(), "row 5 is of touch 15, which is not in the plan of 5 touches");
+    EXPECT_FALSE(unknown.hint().empty());
+    EXPECT_THAT(error_of([&] { with_features(cloud_of(touches, Columns::approach_only), plan); }).sentence(),
+                testing::HasSubstr("no column 'touch'"));
 }
 
 }  // namespace
