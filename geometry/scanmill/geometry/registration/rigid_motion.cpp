@@ -50,11 +50,15 @@ PairsFit pairs_fit(std::span<const Vec3> from, std::span<const Vec3> to, std::sp
         products += weight(i) * (from[i] - fit.from_mean) * (to[i] - fit.to_mean).transpose();
         fit.from_squares += weight(i) * (from[i] - fit.from_mean).squaredNorm();
     }
+    // GCC 12 at -O3 believes that the singular values are not set.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
     fit.left = svd.matrixU(), fit.right = svd.matrixV(), fit.values = svd.singularValues();
     fit.mirrors = (fit.right * fit.left.transpose()).determinant() < 0;
     return fit;
 }
+#pragma GCC diagnostic pop
 
 RigidMotion fitted_motion(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights) {
     return pairs_fit(from, to, weights).motion();
