@@ -213,5 +213,5 @@ def probe_compensate():
     picture.text((6.6, 1.2), "point of the pair", BRIGHT)
     picture.line((6.5, 1.25), edge, BRIGHT, 1)
     picture.text((0.6, 0.8), "reported contacts")
-    picture.line((2.5, 0.95), (edge[0] + 0.17, edge[1] - 0.02), INK, 1)
+    picture.line((2.95, 0.88), (edge[0] + 0.17, edge[1] - 0.02), INK, 1)
     return picture

@@ -62,8 +62,8 @@ std::size_t pairs_of_share(double share, std::size_t points) {
 
 /// The points at a pose.
 struct Pairs {
-    Array<PlanePair> list;  ///< of all points; the residual is NaN without a pair
-    Array<double> magnitudes;  ///< of the residuals, of points with a pair, in any order
+    Array<PlanePair> list;  ///< one per point; the residual is NaN without a pair
+    Array<double> magnitudes;  ///< absolute residuals of the points with a pair, in any order
     double nearest = 0;  ///< smallest distance of a point from the target, also without a pair
     std::size_t on_boundary = 0;  ///< points near enough, where the target ends
 };

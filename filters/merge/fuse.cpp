@@ -29,7 +29,7 @@ constexpr double least_flatness = 1e-3;
 constexpr double cosine_150_degrees = -0.86602540378443865;
 /// Sines below this are rounding errors between equal directions.
 constexpr double same_direction = 1e-9;
-/// Width of the strip in which a view fades, in reaches, and what is left of its weight at the border.
+/// A view's weight falls towards its border over this distance, in reaches, to this share.
 constexpr double fade_width = 4, least_fade = 0.01;
 constexpr double least_cosine = 0.05;
 constexpr double least_agreement = 0.7;  // product of normals
@@ -194,8 +194,8 @@ Layer layer_of(const Sums& sums, bool is_own) {
     return {height - slope_u * u - slope_v * v, sums.cosine * w * sums.fade * w * support};
 }
 
-/// The points of all views in a grid, with the search for partners. The points of a cell share their candidates: those
-/// of the cell and of the cells around it.
+/// The points of all views in a grid, with the search for partners. The points of a cell share their candidates, which
+/// are the points of the cell and of the cells around it.
 class Layers {
 public:
     /// The arguments must outlive the object. Rows are ordered by view.

@@ -19,7 +19,7 @@ struct BallPair {
 
 struct EdgePoint {
     Vec3 position;
-    double sine;  ///< of the angle between the contact normals
+    double sine;  ///< the angle is that between the contact normals
     Vec3 first_normal, second_normal;  ///< from the point to the centres, projected; of length r
 };
 
@@ -41,9 +41,10 @@ struct LinePosition {
 /// The circle through a point and its neighbours stands for the edge. Turning the centres about its axis into the plane
 /// through the axis and the point leaves their distance from the edge as it is, and edge_point() is exact there. The
 /// circles change with the points, so this is repeated until no point moves by more than 1e-9 radii, at most 20 times.
-/// Neighbours are points of the line at least a radius away, as far as it has so many.
+/// Neighbours are the nearest points of the line that are at least a radius away, if the line is long enough.
 /// A point stays as it is unless it and two neighbours on each side are pairs, and all five are on one circle within
-/// a quarter of the distance of touches: corners are no circles. `closed`: the line returns to its first point.
+/// a quarter of the distance between touches, so points beside corners stay. `closed`: the line returns to its first
+/// point.
 /// Returns the number of corrected points.
 std::size_t correct_curved(std::span<const LinePosition> line, bool closed, double radius);
 

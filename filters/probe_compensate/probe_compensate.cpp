@@ -44,7 +44,7 @@ constexpr std::string_view check_ball = "check `radius` (not the diameter) and `
 
 struct Touches {
     std::vector<Vec3> centres, approaches;  ///< O and u
-    std::vector<double> sigma;  ///< zeros if there is no column `uncertainty`
+    std::vector<double> sigma;  ///< 0 without a column `uncertainty`
     /// Empty if the input has no such column.
     std::vector<double> touch, feature;
 };

@@ -218,7 +218,7 @@ private:
         put("PTMEAS/CART," + nominal);
         put("ENDMES");
         put(fmt::format("OUTPUT/FA({})", label));
-        here_.clear();  // the machine retracts by itself, but it is told to be at the start
+        here_.clear();  // the machine has retracted, so the next move must be written even to the same place
         put_move(touch.start);
     }
 
@@ -229,7 +229,7 @@ private:
     std::vector<u32> rows_;  ///< touches that are made, in their order
     std::size_t unmade_ = 0;
     std::vector<const ProbeMove*> moves_;  ///< the clearance move to each touch
-    std::vector<std::string> labels_;  ///< of each touch; empty if it is not made
+    std::vector<std::string> labels_;  ///< one per touch; empty if it is not made
     std::string here_;  ///< where the ball's centre is, as text; empty if unknown
 };
 
