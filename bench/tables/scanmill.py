@@ -8,14 +8,16 @@ class Broken(Exception):
     """The program gave no usable report. One sentence."""
 
 
-def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None, settings=None, until=None):
+def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None, settings=None, until=None, unit=None):
     """The report of `scanmill run --json` without a cache. `inputs` are files and `settings` parameter values, by name.
-    The run ends after the step `until`. The report includes failed scans. Raises Broken without a report: bad
+    The run ends after the step `until`. Files without a unit have the unit `unit`. The report includes failed scans. Raises Broken without a report: bad
     arguments, a fault of the program, or no end within `limit` seconds."""
     command = [program, "run", workflow, *scans, "-o", folder, "--threads", threads, "--jobs", jobs]
     command += ["--no-cache", "--quiet", "--json"]
     if until:
         command += ["--until", until]
+    if unit:
+        command += ["--unit", unit]
     for name, file in (inputs or {}).items():
         command += ["--in", f"{name}={file}"]
     for name, value in (settings or {}).items():
@@ -28,11 +30,13 @@ def info(program, file, limit=60):
     return report([str(program), "info", str(file), "--json"], limit)["files"][0]
 
 
-def measure(program, mesh, truth, limit, settings=(), threads=0):
+def measure(program, mesh, truth, limit, settings=(), threads=0, truth_unit=None):
     """The metrics of `scanmill measure --json`."""
     command = [str(program), "measure", str(mesh), str(truth), "--json", "--threads", str(threads)]
     for setting in settings:
         command += ["--set", setting]
+    if truth_unit:
+        command += ["--truth-unit", truth_unit]
     return report(command, limit)["metrics"]
 
 

@@ -294,7 +294,8 @@ void cut_off_scattered(const Neighbourhoods& all, Array<Judgement>& judgements, 
         if (!is_member[i]) continue;
         ++size[clusters.find(i)];
         linked[clusters.find(i)] += std::ranges::any_of(all.of(i), [&](u32 other) {
-            return !judgements[other].is_scattered && !judgements[other].is_hovering && are_mutual(all, i, other);
+            const Judgement& its = judgements[other];
+            return !its.is_suspect && !its.is_scattered && are_mutual(all, i, other);
         });
     }
     for (u32 i = 0; i < count; ++i)

@@ -82,7 +82,7 @@ struct OutlierRemovalResult {
 ///    surface.
 /// 3. Clusters. Scattered positions, more than half of whose neighbours are scattered, form clusters of mutual
 ///    neighbours. A cluster is cut off, unless 15 % of it have a mutual neighbour that is neither scattered nor
-///    hovering.
+///    a suspect.
 /// 4. Connection. Hovering positions and those cut off are connected to nothing. Two others are connected
 ///    - if neither is a suspect and they are at most `radius` apart, or
 ///    - if one is among the nearest of the other, their distance is at most 6 times the mean distance of either, and

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = OutlierRemovalParams;
-    return Declare<P>("outlier-removal", 2)
+    return Declare<P>("outlier-removal", 3)
         .summary("Removes points that are far from all others, in small groups, scattered, or above the surface.")
         .source("Rusu, Marton, Blodow, Dolha, Beetz 2008; Breunig, Kriegel, Ng, Sander 2000")
         .ties("Points at a limit pass. Of equally near points, the lower in order of x, then y, then z is nearer.")

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ProbeCompensateParams;
-    return Declare<P>("probe-compensate", 1)
+    return Declare<P>("probe-compensate", 2)
         .summary("Makes points and lines of the edges from the touches of a measuring machine.")
         .source("Wang 2006, chapter 5, for the touches")
         .ties(
@@ -41,6 +41,14 @@ SCANMILL_FILTER() {
         .param("spacing", &P::spacing,
                "Distance of touches along a line; lines end where touches are twice as far apart. `auto` is the median "
                "of each feature.",
+               above(0), word("auto"))
+        .param("noise", &P::noise,
+               "Standard deviation of the machine's error in each coordinate, where the touches have no column "
+               "`uncertainty`.",
+               at_least(0))
+        .param("chord-error", &P::chord_error,
+               "Lines follow circles through neighbouring pairs; this is the largest distance of their chords from the "
+               "circles. `auto` is 0.5 % of the median distance of touches.",
                above(0), word("auto"))
         .metric("points", Unit::count, "Points that were made.", headline)
         .metric("paired", Unit::count, "Points made of two touches, which fix the edge.", headline, larger_is_better)

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "probe_compensate/arcs.hpp"
 #include "probe_compensate/edge_point.hpp"
 #include "probe_compensate/touched_lines.hpp"
 #include "scanmill/base/error.hpp"
@@ -44,7 +45,7 @@ constexpr std::string_view check_ball = "check `radius` (not the diameter) and `
 
 struct Touches {
     std::vector<Vec3> centres, approaches;  ///< O and u
-    std::vector<double> sigma;  ///< 0 without a column `uncertainty`
+    std::vector<double> sigma;
     /// Empty if the input has no such column.
     std::vector<double> touch, feature;
 };
@@ -101,7 +102,7 @@ std::vector<Vec3> approaches_of(const ColumnTable& columns) {
     return approaches;
 }
 
-Touches touches_of(const PointCloud& cloud, double radius, Reported reported) {
+Touches touches_of(const PointCloud& cloud, double radius, double noise, Reported reported) {
     Touches touches;
     touches.approaches = approaches_of(cloud.columns);
     touches.sigma = numbers_of(cloud.columns, "uncertainty");
@@ -111,7 +112,7 @@ Touches touches_of(const PointCloud& cloud, double radius, Reported reported) {
         if (touches.sigma[row] < 0)
             throw Error("the uncertainty in row {} is {}; it must be 0 or more", row, number_text(touches.sigma[row]))
                 .hint("write the machine's standard deviation per coordinate, or remove the column");
-    touches.sigma.resize(cloud.size());
+    touches.sigma.resize(cloud.size(), noise);
     for (std::size_t row = 0; row < cloud.size(); ++row) {
         touches.centres.push_back(cloud.positions[row]);
         if (reported == Reported::contact) touches.centres.back() += radius * touches.approaches[row];
@@ -245,7 +246,32 @@ std::vector<Made> points_of(const Touches& touches, double radius, std::vector<s
     return made;
 }
 
-/// Joins the points to lines and corrects those on curved edges.
+/// Corrects the points on curved edges. `points`: for each vertex of the lines, its touch.
+void correct(std::vector<Made>& made, std::span<const std::size_t> first_of_touch, std::span<const std::size_t> points,
+             double radius, ProbeCompensateResult& result) {
+    Array<Vec3> positions(result.features.positions.size());
+    for (const FeaturePolyline& line : result.features.polylines) {
+        std::vector<compensating::LinePosition> sequence;
+        for (u32 i = line.begin; i < line.end; ++i) {
+            Made& point = made[first_of_touch[points[i]]];
+            sequence.push_back({point.balls ? &*point.balls : nullptr, &point.point});
+        }
+        result.curved += compensating::correct_curved(sequence, line.closed, radius);
+        for (u32 i = line.begin; i < line.end; ++i) positions[i] = sequence[i - line.begin].point->position;
+    }
+    result.features.positions = std::move(positions);
+}
+
+/// The median distance of consecutive points.
+double median_chord(const FeatureGraph& lines) {
+    std::vector<double> chords;
+    for (const FeaturePolyline& line : lines.polylines)
+        for (u32 i = line.begin; i + 1 < line.end; ++i)
+            chords.push_back((lines.positions[lines.vertices[i + 1]] - lines.positions[lines.vertices[i]]).norm());
+    return median(chords);
+}
+
+/// Joins the points to lines.
 void join(std::vector<Made>& made, const Touches& touches, std::span<const std::size_t> first_of_touch, double radius,
           const ProbeCompensateParams& params, ProbeCompensateResult& result) {
     std::vector<compensating::LinePoint> points;
@@ -257,19 +283,14 @@ void join(std::vector<Made>& made, const Touches& touches, std::span<const std::
     compensating::TouchedLines lines = compensating::touched_lines(result.points.frame, points, spacing);
     result.lone = lines.lone;
     result.features = std::move(lines.graph);
-    if (params.tangent != ProbeCompensateParams::Tangent::line) return;
-
-    Array<Vec3> positions(result.features.positions.size());
-    for (const FeaturePolyline& line : result.features.polylines) {
-        std::vector<compensating::LinePosition> sequence;
-        for (u32 i = line.begin; i < line.end; ++i) {
-            Made& point = made[first_of_touch[lines.points[i]]];
-            sequence.push_back({point.balls ? &*point.balls : nullptr, &point.point});
-        }
-        result.curved += compensating::correct_curved(sequence, line.closed, radius);
-        for (u32 i = line.begin; i < line.end; ++i) positions[i] = sequence[i - line.begin].point->position;
-    }
-    result.features.positions = std::move(positions);
+    if (params.tangent == ProbeCompensateParams::Tangent::line)
+        correct(made, first_of_touch, lines.points, radius, result);
+    if (result.features.polylines.empty()) return;
+    std::vector<bool> is_exact(result.features.positions.size());
+    for (std::size_t i = 0; i < is_exact.size(); ++i)
+        is_exact[i] = made[first_of_touch[lines.points[i]]].balls.has_value();
+    const double chord_error = params.chord_error ? params.chord_error->value() : 0.005 * median_chord(result.features);
+    result.features = compensating::along_arcs(result.features, is_exact, chord_error);
 }
 
 void doubt_ratios(std::span<const Made> made, const Touches& touches, Context& context) {
@@ -315,9 +336,13 @@ void report(const ProbeCompensateResult& result, Context& context) {
 ProbeCompensateResult probe_compensate(const PointCloud& cloud, const ProbeCompensateParams& params, Context& context) {
     const double radius = positive_length_of(params.radius, "radius", "give the radius of the probe's ball");
     const double scanner_error = length_of(params.scanner_error, "scanner-error");
+    const double noise = length_of(params.noise, "noise");
     if (params.spacing) positive_length_of(*params.spacing, "spacing", "give the distance of touches, or `auto`");
+    if (params.chord_error)
+        positive_length_of(*params.chord_error, "chord-error",
+                           "give a length, or `auto`; a long one keeps straight lines");
     require_points(cloud, "compensation needs at least 1");
-    const Touches touches = touches_of(cloud, radius, params.reported);
+    const Touches touches = touches_of(cloud, radius, noise, params.reported);
 
     ProbeCompensateResult result;
     result.points.frame = cloud.frame;

@@ -33,6 +33,10 @@ struct ProbeCompensateParams {
     /// delta: the largest distance of a reference point from the true edge, of which single touches know nothing.
     Length scanner_error;
     Tangent tangent = Tangent::line;
+    /// sigma of touches without the column `uncertainty`: the machine's error per coordinate.
+    Length noise;
+    /// Largest distance of the lines' chords from a curved edge. Empty: 0.5 % of the median distance of joined touches.
+    std::optional<Length> chord_error;
     /// The distance of neighbouring touches of a line. Empty: the median distance of its consecutive touches.
     std::optional<Length> spacing;
 };
@@ -44,7 +48,8 @@ struct ProbeCompensateResult {
     /// `touch` and `feature`, if the input has them, with its numbers and types; `approach` (3 × float64), for a pair
     /// the unit vector of the mean; `uncertainty` (float64, a length).
     PointCloud points;
-    /// The touched lines, of type crease. Their normals are zero: touches do not measure the faces. No corners.
+    /// The touched lines, of type crease, with points on circles between the touches (see arcs.hpp). Their normals are
+    /// zero: touches do not measure the faces. No corners.
     FeatureGraph features;
     /// For each point, the two rows of the input that it is made from, ascending; a single has no_row second.
     std::vector<std::array<u32, 2>> rows;
@@ -57,7 +62,7 @@ struct ProbeCompensateResult {
 
 /// Reads the columns `approach` (three numbers: the unit vector u from the part to the probe), and, if they exist,
 /// `touch` (number of the reference point), `feature` (number of the line) and `uncertainty` (sigma, the machine's
-/// error per coordinate; 0 if absent). The centre of a ball is O = position + r u, or the position itself.
+/// error per coordinate; `noise` if absent). The centre of a ball is O = position + r u, or the position itself.
 ///
 /// Pairs:   rows of one `touch` whose approaches are at least 10 degrees apart (within 1e-9 rad). Of more than two rows
 ///          the two farthest apart are used, and the others are not. The tangent of the edge is the cross product of
@@ -72,7 +77,8 @@ struct ProbeCompensateResult {
 /// Lines:   one sequence of touches per `feature`, in the order of rows; a touch of several singles counts with its
 ///          first. Consecutive touches are joined if they are nearer than twice the spacing; a gap ends the line and
 ///          begins another. If the last touch is nearer than 1.5 spacings to the first, and there are three, they are
-///          joined, too. Touches at the position of their predecessor are left out. No lines without `feature`.
+///          joined, too. Touches at the position of their predecessor are left out. No lines without `feature`. Between
+///          pairs, lines follow the circles through neighbouring pairs.
 /// Ties:    of equally large angles, the pair whose rows come first. A distance of exactly twice the spacing is a gap.
 ///
 /// Throws Error for no points, or NaN or infinity among the positions or the numbers above; for a radius that is not

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "probe_planner/lines.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
+#include "probe_planner/whole_lines.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
@@ -150,24 +153,33 @@ bool is_chosen(FeatureType type, const LineChoice& choice) {
 
 }  // namespace
 
-std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice) {
+ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error) {
     require_consistent(features);
-    std::vector<Line> lines;
+    const WholeLines whole = whole_lines(features, error);
+    const FeatureGraph& graph = whole.features;
+    ChosenLines chosen;
+    chosen.left_out = whole.left_out;
     std::array<std::size_t, 3> counts{};
-    for (u32 row = 0; row < features.polylines.size(); ++row) {
-        const FeatureType type = features.polylines[row].type;
+    for (u32 row = 0; row < graph.polylines.size(); ++row) {
+        const FeatureType type = graph.polylines[row].type;
         ++counts[static_cast<std::size_t>(type)];
-        if (is_chosen(type, choice)) lines.push_back(read_line(features, row));
+        if (is_chosen(type, choice)) chosen.lines.push_back(read_line(graph, row));
     }
-    if (lines.empty())
-        throw Error("there is no line to probe: the features have {}, {} and {}",
+    if (chosen.lines.empty())
+        throw Error("there is no line to probe: the features have {}, {} and {}{}",
                     count_text(counts[0], "outer boundary", "outer boundaries"), count_text(counts[1], "hole", "holes"),
-                    count_text(counts[2], "crease", "creases"))
+                    count_text(counts[2], "crease", "creases"),
+                    chosen.left_out == 0 ? ""
+                                         : fmt::format(", and {} within the scanner-error of each other",
+                                                       count_text(chosen.left_out, "crease", "creases")))
             .hint(features.polylines.empty() ? "a closed mesh without sharp edges has no features; lower `sharp-angle` "
                                                "in the filter that finds them"
-                                             : "`features: all` probes every line");
-    find_stops(features, lines);
-    return lines;
+                  : chosen.left_out > 0 ? "a finer scan with smaller voxels and a smaller scanner-error has longer "
+                                          "edges"
+                                        : "`features: all` probes every line");
+    find_stops(graph, chosen.lines);
+    for (Line& line : chosen.lines) line.row = whole.rows[line.row];
+    return chosen;
 }
 
 Window window_round(const Line& line, u32 segment, const Vec3& point) {

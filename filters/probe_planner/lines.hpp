@@ -17,7 +17,7 @@ inline constexpr double sqrt_half = std::numbers::sqrt2 / 2;
 /// A polyline with the values that are computed once per segment. Segment i starts at vertex i. The last segment of a
 /// closed line ends at vertex 0.
 struct Line {
-    u32 row = 0;
+    u32 row = 0;  ///< of the line, or of its first part, among the features
     FeatureType type{};
     bool closed = false;
     Array<Vec3> points, left,
@@ -49,8 +49,14 @@ struct LineChoice {
     bool creases = true, holes = true, boundaries = true;
 };
 
-/// Returns the chosen lines in the order of their rows. Throws Error as find_reference_points() does.
-std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice);
+struct ChosenLines {
+    std::vector<Line> lines;
+    std::size_t left_out = 0;  ///< short creases
+};
+
+/// Returns the chosen lines in the order of their rows, with creases made whole by whole_lines(). Throws Error as
+/// find_reference_points() does.
+ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error);
 
 /// Consecutive segments around one segment.
 struct Window {

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ProbePlannerParams;
-    return Declare<P>("probe-planner", 4)
+    return Declare<P>("probe-planner", 5)
         .summary(
             "Plans where and from which direction a touch probe measures the edges of a part, and checks the plan by "
             "simulation.")
@@ -97,6 +97,9 @@ SCANMILL_FILTER() {
         .metric("edge-roughness", Unit::length,
                 "Distance of the lines' vertices from smooth curves (95 % quantile); a part of scanner-error.",
                 smaller_is_better)
+        .metric(
+            "short-creases", Unit::count,
+            "Creases shorter than twice scanner-error that were left out: branches, double paths and isolated ones.")
         .metric("paired-lines", Unit::count, "Pairs of lines of two patches along one edge, which is probed once.")
         .metric("single", Unit::count, "Reference points with one touch although two were asked for.",
                 smaller_is_better)

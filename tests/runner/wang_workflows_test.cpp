@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -134,9 +135,10 @@ protected:
         }
     }
     ProgramResult run(const std::string& first_corner) {
-        return scanmill_program({"run", shipped("wang-2006-hybrid.yaml"), "block.ply", "--in", "plate=plate.ply",
-                                 "--in", "corners=corners.csv", "--set", "first-corner=" + first_corner, "-o", "out"},
-                                {.folder = folder.path()});
+        return scanmill_program(
+            {"run", shipped("wang-2006-hybrid.yaml"), "block.ply", "--unit", "mm", "--in", "plate=plate.ply", "--in",
+             "corners=corners.csv", "--set", "first-corner=" + first_corner, "-o", "out"},
+            {.folder = folder.path()});
     }
     TemporaryFolder folder;
 };
@@ -146,6 +148,7 @@ TEST_F(HybridWorkflow, PlansTouchesOfTheBlocksEdgesInTheMachinesFrame) {
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json transform = content(folder / "out/block-to-machine.json");
     EXPECT_EQ(transform.at("frame"), "machine");
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/block-probes.dmi"));
     const json& rows = transform.at("poses")[0].at("matrix");
     EXPECT_NEAR(rows[0][0].get<double>(), Machine::cosine, 1e-4);
     EXPECT_NEAR(rows[0][1].get<double>(), -Machine::sine, 1e-4);
@@ -190,7 +193,7 @@ TEST_F(HybridWorkflow, MovingTwice_IsRefused) {
                      "transform: motion}\noutputs: {\"{scan}-moved.ply\": again}\n");
     ASSERT_EQ(run("[95 u, -65 u, 0 u]").exit_code, 0);
     const ProgramResult ran = scanmill_program(
-        {"run", twice.string(), "block.ply", "--in", "motion=out/block-to-machine.json", "-o", "moved"},
+        {"run", twice.string(), "block.ply", "--unit", "mm", "--in", "motion=out/block-to-machine.json", "-o", "moved"},
         {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, testing::HasSubstr("already in the frame 'machine'"));

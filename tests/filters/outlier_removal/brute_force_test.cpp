@@ -140,8 +140,8 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
     for (std::size_t i = 0; i < size; ++i) {
         if (!member[i]) continue;
         ++members[cluster[i]];
-        linked[cluster[i]] +=
-            std::ranges::any_of(nearest[i], [&](std::size_t j) { return !scattered[j] && !hovers[j] && among(i, j); });
+        linked[cluster[i]] += std::ranges::any_of(
+            nearest[i], [&](std::size_t j) { return !scattered[j] && !is_suspect[j] && among(i, j); });
     }
     for (std::size_t i = 0; i < size; ++i) cut_off[i] = member[i] && linked[cluster[i]] < 0.15 * members[cluster[i]];
 

@@ -60,6 +60,28 @@ TEST(OutlierRemovalUniform, UpToHalfAsManyAsPoints_AreFoundRoundScans) {
     expect_found(*read_points(fandisk), "fandisk");
 }
 
+/// The surface of a cube, on a lattice.
+PointCloud hollow_cube(int per_edge) {
+    PointCloud cloud;
+    Array<Vec3> positions;
+    const auto is_end = [&](int i) { return i == 0 || i == per_edge; };
+    for (int x = 0; x <= per_edge; ++x)
+        for (int y = 0; y <= per_edge; ++y)
+            for (int z = 0; z <= per_edge; ++z)
+                if (is_end(x) || is_end(y) || is_end(z)) positions.emplace_back(x, y, z);
+    cloud.positions = std::move(positions);
+    return cloud;
+}
+
+TEST(OutlierRemovalUniform, FewInsideADenseScan_AreFoundAlthoughTheirNeighboursAreNearTheSurface) {
+    const PointCloud cube = hollow_cube(120);
+    for (const double share : {0.003, 0.005, 0.01}) {
+        const Shares found = removed_shares(cube, share, 3);
+        EXPECT_GE(found.outliers, 0.98) << share;
+        EXPECT_EQ(found.surface, 0) << share;
+    }
+}
+
 TEST(OutlierRemovalUniform, HalvesOfDifferentDensities_BothStay) {
     for (const std::size_t times : {1, 2, 3, 5, 8}) {
         std::vector<Vec3> points;

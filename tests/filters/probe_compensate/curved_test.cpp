@@ -60,7 +60,7 @@ TEST(ProbeCompensateCurved, TangentsOfApproaches_ErrOnARim) {
 
 TEST(ProbeCompensateCurved, LinesHaveTheCorrectedPoints) {
     const Compensated result = compensated(on_rim(5, 16, 0.4), with_radius(r));
-    ASSERT_EQ(result.features.positions.size(), 16u);
+    ASSERT_GE(result.features.positions.size(), 16u);
     for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(result.features.positions[i], result.points.positions[i]);
 }
 
