@@ -29,9 +29,10 @@ def block_with_holes(size=(88, 95, 41), middle=21, corner=5):
 
 
 def bicone(radius=50, height=30):
-    """Two cones with a common base. A scan sees the edge as any other; the interior angle is 2 atan(height / radius)."""
+    """Two cones with a common base, whose interior angle is 2 atan(height / radius), tilted so that most of the edge can be
+    touched from above."""
     cone = manifold3d.Manifold.cylinder(height, radius, 0, FACETS)
-    return mesh_of(cone + cone.mirror((0, 0, 1)))
+    return mesh_of((cone + cone.mirror((0, 0, 1))).rotate((35, 10, 0)))
 
 
 def model(file):
