@@ -66,6 +66,9 @@ hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmil
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml and bernardini-1997-raw.yaml.
 raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
+# Further filters of wang_hybrid.py.
+probing := scanmill-align scanmill-apply-transform scanmill-plate-corners scanmill-probe-planner scanmill-virtual-probe
+probing += scanmill-probe-compensate
 # Further filters of surfaces.py, woo_dey_table_1.py, woo_dey_updates.py and registration.py.
 surfaces := scanmill-cocone scanmill-tight-cocone scanmill-poisson scanmill-mesh-update scanmill-register
 
@@ -73,11 +76,12 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) $(surfaces) peers-drivers
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) $(surfaces) $(probing) peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/outliers.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/wang_hybrid.py build/bench/bin/scanmill
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/woo_dey_table_1.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)

@@ -50,6 +50,36 @@ mkdir -p "$root/docs/part-changed"
 cp changed/model.png changed/scans.png changed/updated.png "$root/docs/part-changed/"
 cp changed/block-change.png "$root/docs/part-changed/change.png"
 
+files_of docs/touched-edges.md
+run scan.yaml bracket.off -o .
+run plate.yaml -o .
+run wang-2006-hybrid part.ply --unit mm --in plate=plate.ply --in corners=corners.csv \
+    --set 'first-corner=[-100 u, -60 u, 5 u]' --set 'spacing=2 mm' -o touched
+run machine.yaml touched/part-probes.json --in model=bracket.off --in pose=pose.json -o .
+run scan-and-touches touched/part-scan.ply --in touches=results.ply --in plan=touched/part-probes.json -o touched
+cat >look.yaml <<'YAML'
+scanmill: 1
+name: look
+inputs: {before: mesh, after: mesh, plan: probes}
+parameters:
+  eye: {default: [450 mm, 240 mm, 135 mm], help: Of the close-ups.}
+  at: {default: [402 mm, 296 mm, 82 mm], help: Their middle.}
+steps:
+  - id: planned
+    render: {size: [480, 360]}
+    in: {scene: before, over: plan}
+  - id: alone
+    render: {size: [480, 360], creases: true, eye: $eye, look-at: $at}
+    in: {scene: before}
+  - id: both
+    render: {size: [480, 360], creases: true, eye: $eye, look-at: $at}
+    in: {scene: after}
+outputs: {plan.png: planned, alone.png: alone, both.png: both}
+YAML
+run look.yaml touched/part-machine.ply --in after=touched/part-scan-hybrid.ply --in plan=touched/part-probes.json -o look
+mkdir -p "$root/docs/touched-edges"
+cp look/plan.png look/alone.png look/both.png "$root/docs/touched-edges/"
+
 # The page on views without poses: eight views of a model, each turned and shifted in a way of its own, then registered.
 cat >view.yaml <<'YAML'
 scanmill: 1

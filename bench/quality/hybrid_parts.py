@@ -35,6 +35,18 @@ def bicone(radius=50, height=30):
     return mesh_of((cone + cone.mirror((0, 0, 1))).rotate((35, 10, 0)))
 
 
+def flange(radius=48, thickness=14, hub=22, height=40, bore=12, bolts=6):
+    """A disc with a hub, a bore, bolt holes and one flat side."""
+    solid = manifold3d.Manifold.cylinder(thickness, radius, radius, FACETS)
+    solid += manifold3d.Manifold.cylinder(height, hub, hub, FACETS)
+    solid -= manifold3d.Manifold.cylinder(3 * height, bore, bore, FACETS, True)
+    for i in range(bolts):
+        hole = manifold3d.Manifold.cylinder(3 * height, 4.5, 4.5, FACETS, True)
+        solid -= hole.translate((35, 0, 0)).rotate((0, 0, 360 * i / bolts))
+    solid -= manifold3d.Manifold.cube((20, 4 * radius, 3 * height), True).translate((radius, 0, 0))
+    return mesh_of(solid)
+
+
 def model(file):
     mesh = trimesh.load(file, process=False)
     mesh.apply_scale(DIAGONAL / float(numpy.linalg.norm(mesh.extents)))

@@ -22,7 +22,8 @@ EDGES = """\
 *Planned* is the length of the lines between neighbouring touches that the machine makes; where both have two directions, the
 touches fix the edge (*pairs*), elsewhere they measure it along one direction only (*singles*). Distances are from the true edge
 to the nearest crease of the mesh, along the planned lines, in mm. *Probe's error* is three standard deviations of a pair and the
-allowed error of the chords between touches. *fandisk_large* has no sharp edges: its triangles lead across them, over up to
+allowed error of the chords between touches. The round edges of *fandisk*, *anchor_dense* and *joint* are polygons, and the lines between touches are
+arcs: they differ by the height of an arc over a side. *fandisk_large* has no sharp edges: its triangles lead across them, over up to
 0.9 mm at this size, so there the distance says how far the creases are from such triangles' sides.
 """
 

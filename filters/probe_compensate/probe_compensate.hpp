@@ -77,8 +77,8 @@ struct ProbeCompensateResult {
 /// Lines:   one sequence of touches per `feature`, in the order of rows; a touch of several singles counts with its
 ///          first. Consecutive touches are joined if they are nearer than twice the spacing; a gap ends the line and
 ///          begins another. If the last touch is nearer than 1.5 spacings to the first, and there are three, they are
-///          joined, too. Touches at the position of their predecessor are left out. No lines without `feature`. Between
-///          pairs, lines follow the circles through neighbouring pairs.
+///          joined, too. Touches nearer than a quarter of the spacing to their predecessor are left out. No lines
+///          without `feature`. Between pairs, lines follow the circles through neighbouring pairs.
 /// Ties:    of equally large angles, the pair whose rows come first. A distance of exactly twice the spacing is a gap.
 ///
 /// Throws Error for no points, or NaN or infinity among the positions or the numbers above; for a radius that is not

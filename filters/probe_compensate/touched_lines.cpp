@@ -17,6 +17,10 @@ constexpr double gap = 2;
 /// line of three touches are 2 spacings apart, and those of a closed line 1.
 constexpr double closing = 1.5;
 
+/// Touches of one edge point: nearer than this many spacings. Where the line of a scan zigzags, two of its reference
+/// points can belong to one point of the true edge, even in the wrong order.
+constexpr double repeated = 0.25;
+
 class LineMaker {
 public:
     LineMaker(const Frame& frame, std::span<const LinePoint> points, std::optional<double> spacing)
@@ -27,20 +31,24 @@ public:
 
     /// `sequence`: indices of the points of one feature.
     void add(std::vector<std::size_t> sequence) {
-        const std::size_t given = sequence.size();
-        std::erase_if(sequence, [&, last = given](std::size_t point) mutable {
-            const bool repeated = last != given && at(point) == at(last);
-            last = point;
-            return repeated;
-        });
-        const std::size_t count = sequence.size();
-        if (count < 2) {
+        std::vector<double> distances = distances_along(sequence);
+        std::erase(distances, 0);
+        if (distances.empty()) {
             ++lines_.lone;
             return;
         }
-        std::vector<double> distances;
-        for (std::size_t i = 0; i + 1 < count; ++i) distances.push_back((at(sequence[i + 1]) - at(sequence[i])).norm());
-        const double spacing = spacing_ ? *spacing_ : median(std::vector<double>(distances));
+        const double spacing = spacing_ ? *spacing_ : median(distances);
+        std::vector<std::size_t> kept;
+        const auto is_repeated = [&](std::size_t point, std::size_t other) {
+            const double distance = (at(point) - at(other)).norm();
+            return distance == 0 || distance < repeated * spacing;
+        };
+        for (const std::size_t point : sequence)
+            if (kept.empty() || !is_repeated(point, kept.back())) kept.push_back(point);
+        while (kept.size() > 3 && is_repeated(kept.back(), kept.front())) kept.pop_back();
+        sequence = std::move(kept);
+        distances = distances_along(sequence);
+        const std::size_t count = sequence.size();
         const double back = (at(sequence.front()) - at(sequence.back())).norm();
         const bool returns = count >= 3 && back > 0 && back < closing * spacing;
 
@@ -72,6 +80,13 @@ public:
 
 private:
     const Vec3& at(std::size_t point) const { return points_[point].position; }
+
+    std::vector<double> distances_along(std::span<const std::size_t> sequence) const {
+        std::vector<double> distances;
+        for (std::size_t i = 0; i + 1 < sequence.size(); ++i)
+            distances.push_back((at(sequence[i + 1]) - at(sequence[i])).norm());
+        return distances;
+    }
 
     void add_line(std::span<const std::size_t> run, bool closed) {
         const auto begin = static_cast<u32>(vertices_.size());

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <queue>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
 
 namespace scanmill::probing {
 
@@ -67,7 +69,7 @@ struct Before {
 
 class Network {
 public:
-    Network(const FeatureGraph& graph, double error) : shortest_(2 * error), circle_(2 * std::numbers::pi * error) {
+    Network(const FeatureGraph& graph, double error) : positions_(graph.positions), shortest_(2 * error) {
         for (u32 row = 0; row < graph.polylines.size(); ++row) paths_.push_back(path_of(graph, row));
         ends_.resize(graph.positions.size());
         is_fixed_.resize(graph.positions.size());
@@ -124,14 +126,36 @@ private:
         return left_out;
     }
 
-    /// The shortest cycle through a crease as ascending rows; empty if it is as long as the circle.
+    bool is_near(u32 vertex, const Path& path) const {
+        const Vec3& point = positions_[vertex];
+        for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+            const Vec3 &a = positions_[path.vertices[i]], &b = positions_[path.vertices[i + 1]];
+            if ((point - nearest_on_segment(point, a, b)).norm() < shortest_) return true;
+        }
+        return false;
+    }
+
+    /// Whether the crease and the way are nearer to each other than `shortest_` everywhere.
+    bool are_beside(const Path& path, std::span<const u32> way) const {
+        const auto on_way = [&](u32 vertex) {
+            return std::ranges::any_of(way, [&](u32 row) { return is_near(vertex, paths_[row]); });
+        };
+        const auto on_path = [&](u32 row) {
+            return std::ranges::all_of(paths_[row].vertices, [&](u32 vertex) { return is_near(vertex, path); });
+        };
+        return std::ranges::all_of(path.vertices, on_way) && std::ranges::all_of(way, on_path);
+    }
+
+    /// A crease and the shortest way round it as ascending rows; empty if they are no cell.
     Array<u32> cell_of(u32 row) const {
         const Path& path = paths_[row];
         const u32 from = path.end(false), to = path.end(true);
+        if (from == to) return path.length < 2 * shortest_ ? Array<u32>{row} : Array<u32>{};
         using Reached = std::tuple<double, u32, u32>;  // length, vertex, row of the crease to it
         std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
         std::map<u32, u32> came_by;
-        next.emplace(path.length, from, row);
+        const double most = path.length + 2 * shortest_;
+        next.emplace(0, from, row);
         while (!next.empty()) {
             const auto [length, vertex, by] = next.top();
             next.pop();
@@ -139,13 +163,14 @@ private:
             if (vertex == to) break;
             for (const u32 other : ends_[vertex]) {
                 const double further = length + paths_[other].length;
-                if (other != row && further < circle_) next.emplace(further, other_end(other, vertex), other);
+                if (other != row && further < most) next.emplace(further, other_end(other, vertex), other);
             }
         }
         Array<u32> cell;
         if (!came_by.contains(to)) return cell;
         for (u32 vertex = to; vertex != from; vertex = other_end(cell.back(), vertex))
             cell.push_back(came_by.at(vertex));
+        if (!are_beside(path, cell)) return {};
         cell.push_back(row);
         std::ranges::sort(cell);
         return cell;
@@ -159,7 +184,7 @@ private:
     std::size_t open_cells() {
         std::set<Array<u32>> cells;
         for (u32 row = 0; row < paths_.size(); ++row)
-            if (paths_[row].is_open_crease && paths_[row].length < circle_)
+            if (paths_[row].is_open_crease)
                 if (Array<u32> cell = cell_of(row); !cell.empty()) cells.insert(std::move(cell));
         std::map<u32, std::set<const Array<u32>*, Before>> cells_of;  // by crease
         for (const Array<u32>& cell : cells)
@@ -247,7 +272,8 @@ private:
         queue(first);
     }
 
-    double shortest_, circle_;
+    const Buffer<Vec3>& positions_;
+    double shortest_;
     std::vector<Path> paths_;
     std::vector<std::vector<u32>> ends_;  ///< by vertex: rows of the open creases that end there
     std::vector<bool> is_fixed_;  ///< by vertex: whether a line passes it

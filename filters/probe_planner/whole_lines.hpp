@@ -16,15 +16,17 @@ struct WholeLines {
 };
 
 /// Leaves out creases that lie within `error` of a line that stays, and joins the others where only two ends meet:
-/// 1. Cells. The shortest cycle through a crease is a cell if it is shorter than a circle of radius `error`. A cell
-/// opens at
-///    a crease that is in no other cell: first at one beside a crease that was left out, so that of the two sides of a
-///    bevel one stays whole; among these at the longest (ties: the higher row).
+/// 1. Cells. A crease and the shortest way round from one of its ends to the other are a cell if they are nearer to
+/// each
+///    other than 2 `error` everywhere, and the way is longer by less than 4 `error`: they are the sides of a bevel and
+///    what joins them. A cell opens at a crease that is in no other cell: first at one beside a crease that was left
+///    out, so that one side of a bevel stays whole; among these at the longest (ties: the higher row).
 /// 2. Branches. Creases shorter than 2 `error` with a free end go, the shortest first (ties: the higher row).
 /// Both repeat until nothing changes. Boundaries and closed creases stay as they are, and so do all lines if nothing is
 /// left out.
 ///
-/// Pre: the arrays of the features fit together. Cost: O(n log n) in the creases while few are within `error` of each.
+/// Pre: the arrays of the features fit together. Cost: O(n log n) in the creases and those that the ways round pass;
+/// sides of k vertices are compared in O(k²).
 WholeLines whole_lines(const FeatureGraph& features, double error);
 
 }  // namespace scanmill::probing

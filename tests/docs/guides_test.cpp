@@ -47,6 +47,13 @@ TEST(Guide, PartChanged_PrintsWhatItShows) {
     follow(guide, folder.path(), folder / "home");
 }
 
+TEST(Guide, TouchedEdges_PrintsWhatItShows) {
+    const TemporaryFolder folder;
+    const Guide guide = read_guide(source / "docs/touched-edges.md");
+    ASSERT_GE(guide.commands.size(), 6u);
+    follow(guide, folder.path(), folder / "home");
+}
+
 TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the guide builds without sanitizers, which a module must share with the program";

@@ -142,5 +142,18 @@ TEST(ProbeCompensateLines, APlanNamesTheLines_WhereTheTouchesHaveNumbersAlone) {
                 testing::HasSubstr("no column 'touch'"));
 }
 
+TEST(ProbeCompensateLines, TouchesOfOnePoint_AlsoInTheWrongOrder_CountOnce) {
+    EXPECT_THAT(lines_of(compensated(along_y({0, 2, 4.4, 4.2, 6, 8}), with_radius(1)).features),
+                ElementsAre(ElementsAre(0, 2, 4.4, 6, 8)));
+    EXPECT_THAT(lines_of(compensated(along_y({0, 2, 4, 4.5, 6, 8}), with_radius(1)).features),
+                ElementsAre(ElementsAre(0, 2, 4, 4.5, 6, 8)))
+        << "exactly a quarter of the spacing";
+    const FeatureGraph ring =
+        compensated(on_circle({0, 45, 90, 135, 180, 225, 270, 315, 355}), with_radius(1)).features;
+    ASSERT_EQ(ring.polylines.size(), 1u);
+    EXPECT_TRUE(ring.polylines[0].closed);
+    EXPECT_EQ(ring.polylines[0].end, 8u) << "the last touch is beside the first";
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -128,6 +128,25 @@ TEST(WholeLines, ALadder_BecomesItsOneSide) {
     expect_normals(whole.features);
 }
 
+TEST(WholeLines, ALongBevel_BecomesItsShorterSide) {
+    // Sides of 20 and 20.2 with rungs of 0.8 at their ends, and a line at either end of the longer side.
+    const FeatureGraph graph =
+        graph_of({{0, 0, 0}, {20, 0, 0}, {0, 0.8, 0}, {10, 2.221, 0}, {20, 0.8, 0}, {-9, 0.8, 0}, {29, 0.8, 0}},
+                 {{{0, 1}}, {{2, 3, 4}}, {{0, 2}}, {{1, 4}}, {{5, 2}}, {{4, 6}}});
+    const WholeLines whole = whole_lines(graph, 1.2);
+    EXPECT_THAT(lines_of(whole), ElementsAre(ElementsAre(5, 2, 3, 4, 6)));
+    EXPECT_EQ(whole.left_out, 1u);
+    EXPECT_EQ(whole_lines(graph, 1).left_out, 0u) << "the middle is 2.2 from the other side";
+}
+
+TEST(WholeLines, ALoop_StaysUnlessItIsSmall) {
+    const FeatureGraph graph = graph_of({{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {-9, 0, 0}}, {{{0, 1, 2, 0}}, {{3, 0}}});
+    EXPECT_EQ(whole_lines(graph, 1).left_out, 0u);
+    const FeatureGraph small =
+        graph_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-9, 0, 0}, {9, 0, 0}}, {{{0, 1, 2, 0}}, {{3, 0}}, {{0, 4}}});
+    EXPECT_THAT(lines_of(whole_lines(small, 1)), ElementsAre(ElementsAre(3, 0, 4)));
+}
+
 TEST(WholeLines, ARing_ThatATriangleInterrupts_IsClosed) {
     // A square of 10 whose corner 0 is a triangle 0, 4, 5.
     const FeatureGraph graph = graph_of({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0.5, 0, 0}, {0, 0.5, 0}},
@@ -148,7 +167,7 @@ TEST(WholeLines, IsolatedShortCreases_AreLeftOut) {
 }
 
 TEST(WholeLines, LargeCycles_AndCreasesBetweenBoundaries_Stay) {
-    // A square hole of 2 (a cycle of 8, beyond 2 pi) in four creases with long lines at two corners.
+    // A square hole of 2 (whose halves are 2 apart) in four creases with long lines at two corners.
     const FeatureGraph square = graph_of({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {-9, 0, 0}, {9, 2, 0}},
                                          {{{0, 1}}, {{1, 2}}, {{2, 3}}, {{3, 0}}, {{4, 0}}, {{2, 5}}});
     EXPECT_EQ(whole_lines(square, 1).left_out, 0u);
