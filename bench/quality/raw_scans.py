@@ -21,7 +21,7 @@ BENCH = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
 
 from harness import machine  # noqa: E402
-from raw_scans_page import OURS, lines_of, misses  # noqa: E402
+from raw_scans_page import KEEP, OURS, lines_of, misses  # noqa: E402
 from tables import options as options_of  # noqa: E402
 from tables import page, scanmill  # noqa: E402
 from tables.ply import write_ply  # noqa: E402
@@ -75,9 +75,9 @@ def truth_of(program, model, limit):
             "intersections": int(facts["self-intersections"]), "triangles": int(facts["triangles"])}
 
 
-def ours(program, workflow, points, model, folder, limit):
+def ours(program, workflow, points, model, folder, limit, settings=None):
     """The facts of the workflow's mesh; only those of the run if there is none."""
-    report = scanmill.run(program, workflow, [points], folder, limit)
+    report = scanmill.run(program, workflow, [points], folder, limit, settings=settings)
     cell = report["cells"][0]
     steps = scanmill.steps(report, cell)
     facts = {"outcome": cell["outcome"], "seconds": sum(step.get("seconds", 0) for step in steps.values())}
@@ -159,8 +159,12 @@ def record_of(name, noise, options, work):
     key = hashlib.sha256(points.tobytes() + repr((VOXEL, DEPTH, RADII, NEIGHBOURS, SAMPLES)).encode()).hexdigest()
     surfaces = {workflow: ours(program, options.workflows / f"{workflow}.yaml", scan, model, folder / workflow, limit)
                 for workflow in OURS}
+    truth = truth_of(program, model, limit)
+    if truth["loops"] > 0:
+        surfaces[KEEP] = ours(program, options.workflows / "raw-scans.yaml", scan, model, folder / "keep", limit,
+                              {"outer": "keep"})
     surfaces.update(remembered(folder / "others.json", key, lambda: others(program, points, model, folder, limit)))
-    return {"name": name, "noise": noise, "points": len(points), "truth": truth_of(program, model, limit),
+    return {"name": name, "noise": noise, "points": len(points), "truth": truth,
             "surfaces": surfaces}
 
 
@@ -182,7 +186,7 @@ def main():
             except scanmill.Broken as failure:
                 failed.append(f"{name}, noise {noise} %: {failure}")
                 continue
-            for workflow in OURS:
+            for workflow in (name for name in records[-1]["surfaces"] if name in (*OURS, KEEP)):
                 found = misses(records[-1], workflow)
                 outcome = records[-1]["surfaces"][workflow]["outcome"]
                 print(f"{name}, noise {noise} %, {workflow}: {outcome}" + "".join(f"; {miss}" for miss in found),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fill_holes/fill_holes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -34,6 +36,12 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
     if (params.max_length && !(params.max_length->value() > 0))
         throw Error("max-length must be above 0; it is {:g} u", params.max_length->value())
             .hint("leave max-length out to fill loops of any length");
+    if (params.must_close && (params.max_edges || params.max_length || params.outer == FillHolesParams::Outer::keep))
+        throw Error("`closed: required` fills every loop, but {} leaves loops open", params.max_edges ? "max-edges"
+                                                                                     : params.max_length
+                                                                                         ? "max-length"
+                                                                                         : "`outer: keep`")
+            .hint("give one of them");
     require_triangles(mesh, "fill-holes needs at least one");
     std::size_t repeats = 0, first = 0;
     for (std::size_t t = mesh.triangles.size(); t-- > 0;)
@@ -43,6 +51,33 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
                     count_text(repeats, "triangle has", "triangles have"), first, mesh.triangles[first][0],
                     mesh.triangles[first][1], mesh.triangles[first][2])
             .hint("repair drops such triangles");
+}
+
+/// For each loop, its flat area as a share of the area of the mesh.
+std::vector<double> shares_of(const TriangleMesh& mesh, const MeshLoops& boundary) {
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+        area += (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm() / 2;
+    std::vector<double> shares;
+    for (const std::vector<u32>& loop : boundary.loops()) {
+        const Vec3 origin = mesh.positions[boundary.start(loop.front())];
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            sum += (mesh.positions[boundary.start(loop[i])] - origin)
+                       .cross(mesh.positions[boundary.start(loop[(i + 1) % loop.size()])] - origin);
+        shares.push_back(area > 0 ? sum.norm() / 2 / area : 0);
+    }
+    return shares;
+}
+
+/// The least share of an outer boundary; infinite if none is one.
+double least_outer_share(const FillHolesParams& params, std::span<const double> shares) {
+    using Outer = FillHolesParams::Outer;
+    if (params.must_close || params.outer == Outer::fill) return std::numeric_limits<double>::infinity();
+    const bool is_open =
+        std::ranges::any_of(shares, [](double share) { return share >= FillHolesParams::outer_share; });
+    return params.outer == Outer::keep || is_open ? FillHolesParams::large_share
+                                                  : std::numeric_limits<double>::infinity();
 }
 
 /// Triangulates the loops. No triangulation intersects anything; a hole without a triangulation is open.
@@ -87,12 +122,13 @@ void report_doubts(const FillHolesResult& result, double diagonal, std::size_t t
     if (too_long > 0)
         context.doubt(
             fmt::format("{} longer than the diagonal of the mesh ({:.6g} u), but filled; the longest has {:.6g} u. The "
-                        "new triangles invent {} as large as the object; max-length leaves such loops open",
+                        "new triangles invent {} as large as the object; `outer: keep` leaves such loops open",
                         count_text(too_long, "loop is", "loops are"), diagonal, result.longest,
                         by_count(too_long, "a surface", "surfaces")));
     if (share > doubtful_share)
         context.doubt(
-            fmt::format("{:.1f} % of the surface is new, more than {:.0f} %", 100 * share, 100 * doubtful_share));
+            fmt::format("{:.1f} % of the surface is new, more than {:.0f} %; `outer: keep` leaves large loops open",
+                        100 * share, 100 * doubtful_share));
     if (result.together > 0)
         context.doubt(fmt::format(
             "{} no triangulation of {} own without intersections: the surface was closed as a whole, which replaced {}",
@@ -117,7 +153,16 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     const FillingStage first_stage = params.fair ? FillingStage::faired : FillingStage::refined;
     FillHolesResult result;
     std::vector<Hole> holes;
-    for (const std::vector<u32>& loop : boundary.loops()) {
+    const std::vector<double> shares = shares_of(mesh, boundary);
+    const double least_outer = least_outer_share(params, shares);
+    double kept_share = 0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const std::vector<u32>& loop = boundary.loops()[i];
+        if (shares[i] >= least_outer) {
+            ++result.outer;
+            kept_share += shares[i];
+            continue;
+        }
         const bool fits = (!params.max_edges || loop.size() <= *params.max_edges) &&
                           (!params.max_length || length_of(mesh, loop) <= params.max_length->value());
         if (fits)
@@ -127,13 +172,23 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     }
     FilledMesh filled = filled_mesh(mesh, fillings_of(mesh, boundary, holes, context), holes);
     result.failed = static_cast<std::size_t>(std::ranges::count_if(holes, &Hole::open));
-    if (params.together && result.failed > 0 && result.beyond_limits == 0) {
+    if (params.together && result.failed > 0 && result.beyond_limits == 0 && result.outer == 0) {
         if (std::optional<Closed> closed = closed_together(mesh, filled, context)) {
             filled = std::move(closed->mesh);
             result.replaced = closed->replaced;
             result.together = std::exchange(result.failed, 0);
         }
     }
+
+    if (params.must_close && result.failed > 0)
+        throw Error("{} open: no triangulation without intersections was found",
+                    count_text(result.failed, "loop stays", "loops stay"))
+            .hint("clean the scan, or accept open loops with `closed: auto`");
+    if (result.outer > 0 && params.outer == FillHolesParams::Outer::automatic)
+        context.warn(fmt::format(
+            "the surface stays open at {}: closed flat, {} would add {:.0f} % to its area; `outer: fill` closes all",
+            count_text(result.outer, "outer boundary", "outer boundaries"), by_count(result.outer, "it", "they"),
+            100 * kept_share));
 
     const double diagonal = surface_box(mesh).diagonal();
     std::size_t too_long = 0;
@@ -158,7 +213,8 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     for (std::string& doubt : doubts_about_handles(result.mesh, context)) context.doubt(std::move(doubt));
 
     context.metric("filled", static_cast<double>(result.filled));
-    context.metric("left", static_cast<double>(result.beyond_limits + result.failed));
+    context.metric("left", static_cast<double>(result.beyond_limits + result.failed + result.outer));
+    context.metric("outer", static_cast<double>(result.outer));
     context.metric("added-triangles", static_cast<double>(added_triangles));
     context.metric("added-points", static_cast<double>(added_points));
     context.metric("area", result.area, Unit::area);

@@ -15,6 +15,15 @@
 namespace scanmill {
 
 struct FillHolesParams {
+    /// Which loops are outer boundaries and stay open. The share of a loop is its flat area, the length of half the sum
+    /// of p x q over its edges, of the area of the mesh: that part of the surface would be new if the loop were closed
+    /// flat. Outer::keep: loops with a share of `large_share` or more. Outer::automatic: of `outer_share` or more, and
+    /// all loops of `large_share` or more if there is one. Outer::fill: none.
+    enum class Outer { automatic, keep, fill };
+    static constexpr double outer_share = 0.4, large_share = 0.02;
+    Outer outer = Outer::automatic;
+    /// Fills outer boundaries, too, and throws Error if a loop stays open.
+    bool must_close = false;
     /// Loops with more boundary edges stay open; at least 3. Empty: any number.
     std::optional<u32> max_edges;
     /// Loops longer than this stay open; above 0. Empty: any length.
@@ -34,6 +43,8 @@ struct FillHolesResult {
     TriangleMesh mesh;
     /// Numbers of loops that were closed, that a limit left open, and that could not be triangulated.
     std::size_t filled = 0, beyond_limits = 0, failed = 0;
+    /// Number of outer boundaries that stay open.
+    std::size_t outer = 0;
     /// Number of filled loops with a plainer triangulation, because the faired one would have intersected something.
     std::size_t plain = 0;
     /// Number of filled loops that were closed together, as the boundary of a solid. Number of input triangles that
@@ -45,7 +56,11 @@ struct FillHolesResult {
     double longest = 0;
 };
 
-/// Fills every boundary loop within the limits, including the outer boundary of an open surface.
+/// Fills every boundary loop within the limits that is no outer boundary.
+///
+/// Outer boundaries. A flat sheet has a share of 1, a hemisphere of 1/2, a cube without its base of 1/5, and face masks
+/// of 0.55 to 0.8. The unseen base of a standing figure and the cut through a neck have 0.1 to 0.2: they are not told
+/// apart, and Outer::automatic closes both. Outer::keep leaves both open, and fills what a scanner missed, below 0.02.
 ///
 /// Loops. The boundary continues in the same fan of triangles. At a vertex with several fans it continues in the next
 /// one, in order of their half-edges. Where the boundary comes back to a vertex, the part between is a loop of its own.
@@ -85,6 +100,7 @@ struct FillHolesResult {
 ///       that intersects nothing.
 ///       Closed components face outwards, or inwards round a cavity (see sides.hpp); a warning counts the triangles
 ///       that were turned.
+/// Warns of outer boundaries that Outer::automatic leaves open.
 /// Doubts its result in five cases: loops are closed together; a filled loop is longer than the diagonal of the mesh's
 /// box; more than 5 % of the area is filled; a loop stays open that no limit excludes; a handle passes through filled
 /// faces or is hardly the object's (see handles.hpp). Warns of boundary edges at equal positions.
@@ -92,8 +108,8 @@ struct FillHolesResult {
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles, about 1 µs for each if there
 /// is a loop. Triangulating n vertices takes about n² time. Closing together takes O(n log n) time and about 2 kB per
 /// vertex, for all vertices.
-/// Metrics: `filled`, `left`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`, `together`,
-/// `replaced-triangles`, `failed`.
+/// Metrics: `filled`, `left`, `outer`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`,
+/// `together`, `replaced-triangles`, `failed`.
 FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);
 
 }  // namespace scanmill

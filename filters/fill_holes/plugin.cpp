@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = FillHolesParams;
-    return Declare<P>("fill-holes", 5)
+    return Declare<P>("fill-holes", 6)
         .summary("Closes the holes of a mesh with triangles that continue the surface, and marks them.")
         .source("Liepa 2003, Filling holes in meshes; Botsch, Kobbelt 2004 for fairing; by CGAL")
         .ties(
@@ -21,6 +21,17 @@ SCANMILL_FILTER() {
                            "The input's vertices and triangles in their rows, then the new ones. The face column "
                            "`filled` and the vertex column `filled` are 1 for new rows. Other columns of new rows have "
                            "the values of the boundary beside them.")
+        .choice("outer", &P::outer,
+                {{"auto", P::Outer::automatic,
+                  "Surfaces stay open if closing one loop flat would add 40 % to their area, as masks, terrain and "
+                  "plates; then all loops of 2 % or more stay open. Else every loop is filled."},
+                 {"keep", P::Outer::keep, "Loops that would add 2 % or more stay open."},
+                 {"fill", P::Outer::fill, "Every loop is filled."}},
+                "The loops that are outer boundaries and stay open.")
+        .choice("closed", &P::must_close,
+                {{"auto", false, "Loops may stay open; those without a filling make the result doubtful."},
+                 {"required", true, "Every loop is filled, also outer ones; it is an error if that fails."}},
+                "Whether the result must be closed.")
         .param("max-edges", &P::max_edges, "Loops with more boundary edges stay open; `none`: any number.", at_least(3),
                word("none"))
         .param("max-length", &P::max_length, "Loops longer than this stay open; `none`: any length.", above(0),
@@ -33,7 +44,9 @@ SCANMILL_FILTER() {
             "If loops stay open because every triangulation would intersect something, closes the whole surface as the "
             "boundary of a solid. This replaces some of its triangles. It is not done if a limit leaves loops open.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
-        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without valid triangles.", headline)
+        .metric("left", Unit::count,
+                "Loops that stay open: outer boundaries, beyond a limit, or without valid triangles.", headline)
+        .metric("outer", Unit::count, "Outer boundaries that stay open.")
         .metric("added-triangles", Unit::count, "New triangles.")
         .metric("added-points", Unit::count, "New vertices.")
         .metric("area", Unit::area, "Area of the new triangles.")

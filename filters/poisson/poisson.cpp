@@ -168,6 +168,7 @@ Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     options.is_cancelled = [&] { return context.cancelled(); };
     Context own(options);
     FillHolesParams params;
+    params.outer = FillHolesParams::Outer::fill;
     params.max_edges = most_crack_edges;
     params.fair = false;
     params.together = false;

@@ -161,9 +161,13 @@ TEST(BadScan, RawScans_OfAPlane_StayOpen) {
     std::string plane;
     for (int i = 0; i < 1600; ++i) plane += fmt::format("{} {} 0\n", 0.1 * (i / 40), 0.1 * (i % 40));
     const TemporaryFolder folder;
-    const ProgramResult ran = raw_scans_of(plane, folder);
-    expect_one_clear_sentence(ran, "raw-scans", {"expected closed: true, found no", "1 loop stays open"});
+    const ProgramResult required = raw_scans_of(plane, folder, {"--set", "closed=required"});
+    expect_one_clear_sentence(required, "raw-scans", {"1 loop stays open", "closed: auto"});
     EXPECT_FALSE(std::filesystem::exists(folder / "out/raw-scans.ply"));
+    const ProgramResult ran = raw_scans_of(plane, folder);
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("the surface stays open at 1 outer boundary: closed flat, it would add 100 %"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/raw-scans.ply"));
 }
 
 TEST(BadScan, RawScans_OfNaNAlone_SaysOneClearSentence) {

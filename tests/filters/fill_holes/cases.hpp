@@ -36,6 +36,12 @@ inline TriangleMesh below(const TriangleMesh& mesh, double height) {
     });
 }
 
+inline FillHolesParams every_loop() {
+    FillHolesParams params;
+    params.outer = FillHolesParams::Outer::fill;
+    return params;
+}
+
 struct Filled : FillHolesResult {
     std::vector<std::string> doubts, warnings;
     Metrics metrics;

@@ -200,12 +200,12 @@ TEST(FillHoles, SurfacesThatTouchInAVertexOfTheirRims_AreClosedApart) {
 
 TEST(FillHoles, AHoleAsLargeAsTheObject_IsDoubtful) {
     const TriangleMesh mesh = below(geodesic_sphere(1, 12), 0);
-    const Filled result = filled(mesh);
+    const Filled result = filled(mesh, every_loop());
     EXPECT_TRUE(topology(result.mesh).closed);
     EXPECT_THAT(result.doubts, Contains(HasSubstr("1 loop is longer than the diagonal of the mesh")));
     EXPECT_THAT(result.doubts, Contains(HasSubstr("of the surface is new, more than 5 %")));
     expect_laws(mesh, result);
-    FillHolesParams params;
+    FillHolesParams params = every_loop();
     params.max_length = Length(3);
     EXPECT_EQ(filled(mesh, params).filled, 0u);
 }
@@ -220,7 +220,7 @@ TEST(FillHoles, SmallHoles_AreNotDoubtful) {
 
 TEST(FillHoles, TheOutlineOfAFlatSheet_StaysOpenWithADoubt) {
     const TriangleMesh mesh = rectangle(2, 1);
-    const Filled result = filled(mesh);
+    const Filled result = filled(mesh, every_loop());
     EXPECT_EQ(result.filled, 0u);
     EXPECT_EQ(result.failed, 1u);
     EXPECT_THAT(result.doubts, ElementsAre("1 loop stays open: no triangulation without intersections was found"));
@@ -230,7 +230,7 @@ TEST(FillHoles, TheOutlineOfAFlatSheet_StaysOpenWithADoubt) {
 TEST(FillHoles, Specks_StayOpenWithADoubt) {
     const TriangleMesh one = soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
     const TriangleMesh mesh = both(one, with_positions(one, [](const Vec3& p) -> Vec3 { return p + Vec3(5, 0, 1); }));
-    const Filled result = filled(mesh);
+    const Filled result = filled(mesh, every_loop());
     EXPECT_EQ(result.failed, 2u);
     EXPECT_THAT(result.doubts, Contains(HasSubstr("2 loops stay open")));
 }
@@ -314,7 +314,7 @@ TEST(FillHoles, TwoHolesOfAThinPlate_DoNotFillThroughEachOther) {
     const TriangleMesh mesh = without(whole, [&](u32 t) {
         return std::ranges::any_of(whole.triangles[t], [&](u32 v) { return std::abs(whole.positions[v].z()) > 0.15; });
     });
-    const Filled result = filled(mesh);
+    const Filled result = filled(mesh, every_loop());
     EXPECT_EQ(result.filled, 2u);
     EXPECT_TRUE(topology(result.mesh).closed);
     expect_laws(mesh, result);

@@ -34,6 +34,25 @@ TEST(FillHolesRefuses, LimitsOutOfRange) {
     }
 }
 
+TEST(FillHolesRefuses, RequiredClosing_WithLimits) {
+    FillHolesParams params;
+    params.must_close = true;
+    params.outer = FillHolesParams::Outer::keep;
+    EXPECT_THAT(refusal(cube(), params).sentence(), HasSubstr("but `outer: keep` leaves loops open"));
+    params.outer = FillHolesParams::Outer::automatic;
+    params.max_edges = 9;
+    EXPECT_THAT(refusal(cube(), params).sentence(), HasSubstr("but max-edges leaves loops open"));
+    EXPECT_FALSE(refusal(cube(), params).hint().empty());
+}
+
+TEST(FillHolesRefuses, RequiredClosing_OfASheet) {
+    FillHolesParams params;
+    params.must_close = true;
+    const Error error = refusal(rectangle(2, 1), params);
+    EXPECT_EQ(error.sentence(), "1 loop stays open: no triangulation without intersections was found");
+    EXPECT_THAT(error.hint(), HasSubstr("closed: auto"));
+}
+
 TEST(FillHolesRefuses, NaN) {
     TriangleMesh mesh = cube();
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
