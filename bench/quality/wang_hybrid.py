@@ -188,7 +188,7 @@ def tried(program, name, part, folder, limit):
     common = {"bin-size": f"{BIN_SIZE} mm", "radius": f"{RADIUS} mm", "scanner-error": f"{SCANNER_ERROR} mm"}
     report = scanmill.run(program, WORKFLOWS / "wang-2006-hybrid.yaml", [scan], folder / "plan", limit, unit="mm",
                           inputs={"plate": folder / "plate.ply", "corners": folder / "corners.csv"},
-                          settings={**common, "spacing": f"{SPACING} mm", "first-corner": f"[{first}]"})
+                          settings={**common, "spacing": f"{SPACING} mm", "first-corner": f"[{first}]", "features": "creases"})
     plan_steps = scanmill.named(report, only_cell(report, f"{name}: plan"))
     made = folder / "plan"
     plan = json.loads(next(made.glob("*-probes.json")).read_text())
@@ -204,7 +204,11 @@ def tried(program, name, part, folder, limit):
                           inputs={"touches": folder / "results.dmi", "plan": next(made.glob("*-probes.json"))})
     both_steps = scanmill.named(report, only_cell(report, f"{name}: scan and touches"))
     hybrid = next((folder / "both").glob("*-hybrid.ply"))
-    alone = next(made.glob("*-machine.ply"))
+    # In the same frame and thus the same voxels: in others, the length of false creases differs by half.
+    report = scanmill.run(program, QUALITY / "wang-hybrid-alone.yaml", [next(made.glob("*-scan.ply"))], folder / "alone", limit,
+                          unit="mm", settings={"bin-size": common["bin-size"]})
+    only_cell(report, f"{name}: scan alone")
+    alone = next((folder / "alone").glob("*-alone.ply"))
 
     truth = folder / "truth.ply"
     write_ply(truth, moved(part.vertices), part.faces)
@@ -212,7 +216,7 @@ def tried(program, name, part, folder, limit):
     planned = planned_edges(plan, SPACING)
     bound = probe_error(read_vertices(next((folder / "both").glob("*-edges.ply"))))
     hybrid_lines = json.loads(next((folder / "both").glob("*-hybrid-edges.json")).read_text())
-    alone_lines = json.loads(next(made.glob("*-machine-edges.json")).read_text())
+    alone_lines = json.loads(next((folder / "alone").glob("*-alone-edges.json")).read_text())
     return {
         "plan_metrics": plan_steps["plan"]["metrics"], "grown": both_steps["mesh"]["metrics"],
         "compensated": both_steps["edges"]["metrics"], "missed": int((~met).sum()), "touched": int(met.sum()),

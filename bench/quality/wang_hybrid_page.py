@@ -10,10 +10,12 @@ whole way is run on parts whose true edges are known:
    scaled to a diagonal of 135 mm.
 2. [wang-2006-hybrid.yaml](../../workflows/wang-2006-hybrid.yaml): clean, thin to voxels of {bin_size:g} mm, find edges, move into
    the machine's frame by the four corners of the base plate, plan touches every {spacing:g} mm from two directions with a ball of
-   radius {radius:g} mm, write the plan as DMIS.
+   radius {radius:g} mm, write the plan as DMIS. Only creases are planned: the parts are closed, so boundaries of their meshes are
+   holes in the scan, and touches there find no edge.
 3. A simulated machine reads the DMIS program, moves the ball along each approach until it meets the true part, adds an error
    of {machine_noise:g} mm in each coordinate, and writes its results as DMIS.
-4. [scan-and-touches.yaml](../../workflows/scan-and-touches.yaml) makes one mesh of the scan and these results.
+4. [scan-and-touches.yaml](../../workflows/scan-and-touches.yaml) makes one mesh of the scan and these results. *Scan alone* is
+   the mesh of the same voxels without touches.
 
 Edges that face down, where the part lies, cannot be touched from above, and concave ones by no ball: they stay as scanned.
 """

@@ -42,11 +42,11 @@ std::string sentence(const std::vector<NamedSegment>& segments, std::string_view
 
 }  // namespace
 
-FixedEdges fixed_edges_of(const PreparedLines& lines, const DistinctPoints& points) {
+std::vector<std::array<u32, 2>> edges_of(const PreparedLines& lines, const DistinctPoints& points) {
     const Array<u32> point_of_row = points_of_rows(points, lines.rows.size());
     std::vector<std::array<u32, 2>> edges;
     for (const auto& [a, b] : lines.segments) edges.push_back({point_of_row[a], point_of_row[b]});
-    return FixedEdges(edges, points.size());
+    return edges;
 }
 
 Array<Edge> segments_in(const FinishedMesh& finished, const Surface& surface) {

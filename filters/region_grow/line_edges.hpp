@@ -9,7 +9,7 @@
 namespace scanmill::growing {
 
 /// The segments as pairs of points. Pre: `points` are those of lines.cloud. Cost: linear, and a sort of the segments.
-FixedEdges fixed_edges_of(const PreparedLines& lines, const DistinctPoints& points);
+std::vector<std::array<u32, 2>> edges_of(const PreparedLines& lines, const DistinctPoints& points);
 
 /// The fixed edges that are edges of the mesh, sorted.
 Array<Edge> segments_in(const FinishedMesh& finished, const Surface& surface);

@@ -77,8 +77,24 @@ bool cross(const Segment& one, const Segment& other) {
     return distance_between(one, other) < limit;
 }
 
+void require_valid_indices(const FeatureGraph& lines) {
+    for (std::size_t number = 0; number < lines.polylines.size(); ++number) {
+        const auto [type, closed, begin, end] = lines.polylines[number];
+        if (begin > end || end > lines.vertices.size())
+            throw Error("line {} has the entries from {} to {}; the lines have {} entries", number, begin, end,
+                        lines.vertices.size())
+                .hint("make the lines anew, with the filter features or probe-compensate");
+    }
+    for (std::size_t entry = 0; entry < lines.vertices.size(); ++entry)
+        if (lines.vertices[entry] >= lines.positions.size())
+            throw Error("entry {} of the lines is point {}; the lines have {} points, counted from 0", entry,
+                        lines.vertices[entry], lines.positions.size())
+                .hint("make the lines anew, with the filter features or probe-compensate");
+}
+
 /// All segments of the lines in the scan's frame, without repeats and without segments of zero length.
 std::vector<Segment> segments_of(const PointCloud& scan, const FeatureGraph& lines) {
+    require_valid_indices(lines);
     require_same_frame(scan.frame, "the points are", lines.frame, "the lines");
     require_finite(lines.positions.span(), "points of lines");
     const Vec3 shift = lines.frame.origin - scan.frame.origin;
@@ -371,6 +387,7 @@ PreparedLines prepare_lines(const PointCloud& scan, const FeatureGraph& lines, C
     for (const Segment& segment : segments) {
         prepared.segments.push_back({vertices.at(segment.a), vertices.at(segment.b)});
         prepared.names.push_back(segment.name);
+        prepared.spacings.push_back(segment.spacing);
     }
     return prepared;
 }

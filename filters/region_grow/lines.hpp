@@ -38,6 +38,8 @@ struct PreparedLines {
     std::vector<std::array<u32, 2>> segments;
     /// For each part, the segment that it belongs to, with the middle of the part.
     std::vector<NamedSegment> names;
+    /// For each part, the spacing.
+    std::vector<double> spacings;
     /// Scan points that are left out.
     std::size_t near_lines = 0;
     /// Parts without support, and segments that yield to another one.
@@ -60,8 +62,8 @@ struct PreparedLines {
 ///   differs by more than 30 degrees from those of both sides: it straddles the edge. The sides' normals are those of
 ///   the two scan points from 1 to 3 spacings from the part's middle whose normals differ most.
 ///
-/// Throws Error for another unit or frame, a point of a line that is not finite, or fewer than three distinct points in
-/// the scan. Cost: O(n log n) in the scan's points, and a sort of the segments.
+/// Throws Error for an index out of range in the lines, another unit or frame, a point of a line that is not finite, or
+/// fewer than three distinct points in the scan. Cost: O(n log n) in the scan's points, and a sort of the segments.
 PreparedLines prepare_lines(const PointCloud& scan, const FeatureGraph& lines, Context& context);
 
 }  // namespace scanmill::growing

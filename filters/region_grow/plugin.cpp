@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 10)
+    return Declare<P>("region-grow", 11)
         .summary("Grows a surface over thinned points from a seed triangle; finds boundaries, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties(

@@ -224,6 +224,18 @@ RegionGrowParams for_prepared(RegionGrowParams params, const PreparedLines& line
     return params;
 }
 
+/// Points beside lines take the normal of their side, with the sign of their own. The limits for points at sharp edges
+/// apply, because with noise triangles beside a line are steeper than elsewhere.
+void use_normals_of_sides(const EdgeSides& sides, PointNormals& normals) {
+    for (u32 point = 0; point < normals.directions.size(); ++point) {
+        const Vec3 normal = sides.normal(point);
+        if (normal.isZero()) continue;
+        Vec3& own = normals.directions[point];
+        own = own.dot(normal) < 0 ? Vec3(-normal) : normal;
+        normals.variation[point] = std::nextafter(sharp_variation, 1.0f);
+    }
+}
+
 /// `lines`: nullptr, or the lines whose cloud is `cloud`.
 RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const RegionGrowParams& params,
                       Context& context) {
@@ -236,9 +248,12 @@ RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const
     context.progress(0.3);
     PointNormals normals = principal_normals(points, neighbourhoods, context.threads());
     FixedEdges edges;
+    EdgeSides sides;
     std::optional<BesideLines> beside;
     if (lines) {
-        edges = fixed_edges_of(*lines, points);
+        const std::vector<std::array<u32, 2>> pairs = edges_of(*lines, points);
+        edges = FixedEdges(pairs, points.size());
+        sides = EdgeSides(points, neighbourhoods, edges, pairs, lines->spacings);
         beside.emplace(points, edges, context.threads());
         // Triangles agree with any normal at tips.
         for (u32 point = 0; point < points.size(); ++point)
@@ -246,12 +261,14 @@ RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const
     }
     const GivenNormals given = take_given_normals(cloud, points, neighbourhoods, normals, context);
     const bool oriented = given.signs_count;
+    if (lines) use_normals_of_sides(sides, normals);
     SearchRadii radii = beside ? beside->radii_of_all(search_radii(cloud, beside->points(), beside->neighbourhoods(),
                                                                    beside->normals_of(normals), params, context))
                                : search_radii(cloud, points, neighbourhoods, normals, params, context);
     Surface surface(points, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
                     oriented);
     surface.fixed_edges = std::move(edges);
+    surface.edge_sides = std::move(sides);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);
@@ -291,6 +308,7 @@ RegionGrowResult grow(const PointCloud& cloud, const PreparedLines* lines, const
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     feature_params.noise = params.noise;
+    feature_params.exact_declared = lines != nullptr;
     FeatureLines found = find_features(finished.mesh, feature_params, context);
     const std::size_t by_themselves = creases_of_triangles(finished.mesh, feature_params, found, context);
     set_sharp_edges(finished, found, patch_edges, segments_in(finished, surface));

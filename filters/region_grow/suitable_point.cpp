@@ -264,6 +264,7 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
                                     bool is_seed) const {
     const u32 point = candidate.point;
     const Triangle triangle{from, point, to};
+    if (surface_.edge_sides.apart(from, point) || surface_.edge_sides.apart(point, to)) return false;
     if (surface_.states[point] == PointState::interior || !has_angles_of(surface_, triangle, limits.least_sine))
         return false;
     if (!agrees_with_points(surface_, triangle, candidate.normal, limits.point_cosine, limits.sharp_cosine) ||

@@ -9,6 +9,7 @@
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/geometry/growing/distinct_points.hpp"
+#include "scanmill/geometry/growing/edge_sides.hpp"
 #include "scanmill/geometry/growing/fixed_edges.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 
@@ -161,6 +162,8 @@ struct Surface {
     /// Edges that the surface must contain. They are sharp: triangles at them and at their ends need not agree with
     /// their neighbours' normals. Normally none.
     FixedEdges fixed_edges;
+    /// The sides of the fixed edges. Growth joins no points on two sides of one; closing holes may.
+    EdgeSides edge_sides;
 
     Fans fans;
     Array<PointState> states;

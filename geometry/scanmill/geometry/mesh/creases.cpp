@@ -107,22 +107,34 @@ public:
     }
 
     /// Removes lines that meet neither other lines nor the boundary if all of their edges together are shorter than
-    /// `length`.
-    void drop_isolated(double length) {
-        DisjointSets components(mesh_.positions.size());
-        std::vector<u32> edges;
+    /// `length`. Edges of `exact` stay, and lines end where they meet one.
+    void drop_isolated(double length, std::span<const Edge> exact) {
+        std::vector<bool> ends(mesh_.positions.size(), false);
+        for (const Edge& edge : exact) ends[edge[0]] = ends[edge[1]] = true;
+        const auto is_exact = [&](u32 half_edge) {
+            const u32 start = half_edges::start(mesh_, half_edge), end = half_edges::end(mesh_, half_edge);
+            return ends[start] && ends[end] && std::ranges::binary_search(exact, make_edge(start, end));
+        };
+        // An edge belongs to the component of its half-edge. Those of a vertex are joined.
+        DisjointSets components(opposite_.size());
+        std::vector<u32> edges, first_at(mesh_.positions.size(), none);
         for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge) {
             if (opposite_[half_edge] == half_edges::no_half_edge || !is_line(half_edge)) continue;
-            components.unite(half_edges::start(mesh_, half_edge), half_edges::end(mesh_, half_edge));
-            if (is_boundary(half_edge) || half_edge < opposite_[half_edge]) edges.push_back(half_edge);
+            if (is_exact(half_edge)) continue;
+            if (!is_boundary(half_edge) && half_edge > opposite_[half_edge]) continue;
+            edges.push_back(half_edge);
+            for (const u32 vertex : {half_edges::start(mesh_, half_edge), half_edges::end(mesh_, half_edge)}) {
+                if (ends[vertex]) continue;
+                if (first_at[vertex] == none) first_at[vertex] = half_edge;
+                components.unite(first_at[vertex], half_edge);
+            }
         }
-        const auto component_of = [&](u32 edge) { return components.find(half_edges::start(mesh_, edge)); };
-        std::vector<double> lengths(mesh_.positions.size(), 0);
+        std::vector<double> lengths(opposite_.size(), 0);
         for (const u32 edge : edges)
-            lengths[component_of(edge)] +=
+            lengths[components.find(edge)] +=
                 is_boundary(edge) ? length : step(half_edges::start(mesh_, edge), edge).norm();
         for (const u32 edge : edges)
-            if (lengths[component_of(edge)] < length) remove(edge);
+            if (lengths[components.find(edge)] < length) remove(edge);
     }
 
     /// Removes lines and branches with a free end that are shorter than `length`, the shortest first. So the longer of
@@ -354,7 +366,8 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     if (result.reach > 0) {
         lines.extend(result.normals, weaker_share * params.sharp_angle + angle_tie, result.reach / 2);
         lines.bridge(result.reach / 2);
-        lines.drop_isolated(result.reach);
+        lines.drop_isolated(result.reach,
+                            params.exact_declared ? mesh.sharp_edges.span() : std::span<const Edge>());
     }
     if (params.least_size > 0) lines.remove_smaller(params.least_size);
     return result;

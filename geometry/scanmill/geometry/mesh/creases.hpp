@@ -29,6 +29,9 @@ struct CreaseParams {
     /// Lines and branches with a free end that are shorter than this are not creases, and neither are the borders of
     /// faces that are as small. 0: lengths and areas do not matter.
     double least_size = 0;
+    /// Whether the declared sharp edges, which must be sorted, are exact, such as measured lines. Then lines that meet
+    /// no others than these count as isolated: noise makes them beside an exact line as anywhere else.
+    bool exact_declared = false;
 };
 
 struct Creases {
@@ -54,7 +57,7 @@ struct Creases {
 /// 3. Free ends that are at most most_gap_edges apart are joined along edges if the path continues both lines. The
 ///    directions may differ by 60 degrees.
 /// 4. Isolated lines that are shorter than the reach of the normals are removed. An isolated line meets neither other
-///    lines nor the boundary.
+///    lines nor the boundary. With `exact_declared`, lines end where they meet a declared edge, and may meet those.
 /// 5. Details below the least size are removed: lines and branches with a free end that are shorter, the shortest
 ///    first, and faces enclosed by creases with less than the square of it as area. A small face joins the face with
 ///    the longest common border.

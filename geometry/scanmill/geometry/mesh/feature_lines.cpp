@@ -316,6 +316,8 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     const CreaseParams crease_params{
         .sharp_angle = params.sharp_angle.in_radians(),
         .noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution),
+        .least_size = 0,
+        .exact_declared = params.exact_declared,
     };
     Creases creases = find_creases(mesh, opposite, crease_params, execution);
     std::vector<bool>& sharp = creases.sharp;

@@ -35,6 +35,8 @@ struct FeatureParams {
     /// Standard deviation of the vertices' distances from the surface; 0 or more, resolved. If absent, vertex_noise()
     /// estimates it.
     std::optional<Length> noise;
+    /// Whether the declared sharp edges are exact, see CreaseParams.
+    bool exact_declared = false;
 };
 
 struct FeatureCounts {
