@@ -8,16 +8,28 @@ namespace scanmill {
 PointStream::~PointStream() = default;
 
 void PointStream::read(std::size_t piece, Array<Vec3>& positions) const {
-    const FiniteBounds world = read_world(piece, positions);
+    const FiniteBounds world = read_near(piece, positions);
     if (positions.size() != pieces_[piece + 1] - pieces_[piece] || !world.are_within(world_.box)) throw_changed();
-    if (frame_.origin == Vec3::Zero()) return;
-    for (Vec3& p : positions) p -= frame_.origin;
+}
+
+FiniteBounds PointStream::read_near(std::size_t piece, Array<Vec3>& positions) const {
+    const FiniteBounds world = read_world(piece, positions);
+    if (frame_.origin != Vec3::Zero())
+        for (Vec3& p : positions) p -= frame_.origin;
+    return world;
 }
 
 PointCloud PointStream::gather(std::span<const u32> rows, unsigned threads) const {
-    PointCloud cloud = gather_world(rows, threads);
-    if (!finite_bounds(cloud.positions.span()).are_within(world_.box)) throw_changed();
+    FiniteBounds world;
+    PointCloud cloud = gather_near(rows, threads, world);
+    if (!world.are_within(world_.box)) throw_changed();
     cloud.frame = frame_;
+    return cloud;
+}
+
+PointCloud PointStream::gather_near(std::span<const u32> rows, unsigned threads, FiniteBounds& world) const {
+    PointCloud cloud = gather_world(rows, threads);
+    world = finite_bounds(cloud.positions.span());
     if (frame_.origin != Vec3::Zero()) cloud.positions = translated(cloud.positions, -frame_.origin);
     return cloud;
 }

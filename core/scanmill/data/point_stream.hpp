@@ -4,7 +4,7 @@
 /// scan is never in memory as a whole.
 ///
 /// Frame, positions and columns equal those of read_points(), bit for bit. open_point_stream() decides which files can
-/// be streamed: binary PLY and texts of three columns.
+/// be streamed: binary PLY, texts of three columns, LAS and LAZ.
 
 #include <functional>
 #include <memory>
@@ -54,6 +54,10 @@ protected:
     /// has changed.
     virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& positions) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
+    /// The same relative to frame().origin, with the bounds of the world positions. The default subtracts the origin.
+    /// Formats that store positions more finely than a double of the full coordinate override both.
+    virtual FiniteBounds read_near(std::size_t piece, Array<Vec3>& positions) const;
+    virtual PointCloud gather_near(std::span<const u32> rows, unsigned threads, FiniteBounds& world) const;
     /// Sets the frame's origin as readers do, and the boxes relative to it. Pre: world_ bounds all pieces.
     void choose_origin();
 

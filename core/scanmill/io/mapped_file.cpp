@@ -47,19 +47,21 @@ void advise(std::string_view part, const void* mapping, int advice) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path, bool whole) {
+MappedFile::MappedFile(const std::filesystem::path& path, bool whole)
     // Without O_NONBLOCK, opening a named pipe would wait for its writer forever.
-    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (file.number < 0) throw_unopened(errno);
+    : MappedFile(Descriptor{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)}.number, whole) {}
+
+MappedFile::MappedFile(int descriptor, bool whole) {
+    if (descriptor < 0) throw_unopened(errno);
     struct stat status;
-    if (::fstat(file.number, &status) != 0) throw_unopened(errno);
+    if (::fstat(descriptor, &status) != 0) throw_unopened(errno);
     if (S_ISDIR(status.st_mode))
         throw Error("is a folder, not a file").hint("name one file, or several by a pattern such as DIR/*.ply");
     if (!S_ISREG(status.st_mode)) throw_irregular();
     if (status.st_size == 0) throw Error("is empty (0 bytes)");
     size_ = static_cast<std::size_t>(status.st_size);
     // One call that maps all pages is faster than a page fault for every few of them.
-    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | (whole ? MAP_POPULATE : 0), file.number, 0);
+    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | (whole ? MAP_POPULATE : 0), descriptor, 0);
     if (data_ == MAP_FAILED)
         throw Error("its {} cannot be mapped: {}", count_text(size_, "byte", "bytes"),
                     std::generic_category().message(errno));

@@ -31,6 +31,10 @@ public:
     void release(std::string_view part) const noexcept;
 
 private:
+    friend class UnnamedFile;
+    /// Maps an open, regular, non-empty file.
+    MappedFile(int descriptor, bool whole);
+
     void* data_ = nullptr;
     std::size_t size_ = 0;
 };

@@ -42,7 +42,7 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
         const auto at_start = [&](const std::string& text) { return head.starts_with(text); };
         return std::ranges::any_of(begins, at_start) ? Recognition::certain : Recognition::no;
     };
-    row.memory_per_byte = 8;  // of PCD; too low for PNG, which is compressed, as for gzip data
+    row.memory_per_byte = spec.memory_per_byte;
     row.is_refused = !spec.reads;
     if (spec.reads)
         row.read = [module](const FileBytes& file, const ReadOptions& options) {
@@ -53,6 +53,13 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
             throw Error("{} is written for other programs, and not read", format)
                 .hint("read the file that it was made from; PLY keeps everything and is read");
         };
+    if (spec.streams) {
+        row.may_stream = [module](std::string_view file) { return module->declaration().may_stream(file); };
+        row.open_stream = [module](std::unique_ptr<MappedFile> file, const ReadOptions& options, unsigned threads,
+                                   const OnWorldPositions& on_positions) {
+            return module->declaration().open_stream(std::move(file), options, threads, on_positions);
+        };
+    }
     for (std::size_t i = 0; i < spec.writes.size(); ++i)
         row.writers.emplace_back(spec.writes[i],
                                  [module, i](const Value& value, OutputBuffer& out, const WriteOptions& options) {
@@ -81,8 +88,10 @@ FormatDeclaration load_format_module(const std::filesystem::path& module, const 
     FormatDeclaration declaration;
     load_declaration(module, "scanmill-format", "file format", name, &declaration);
     if (bool(declaration.read) != declaration.spec.reads ||
+        bool(declaration.may_stream) != declaration.spec.streams ||
+        bool(declaration.open_stream) != declaration.spec.streams ||
         !std::ranges::equal(declaration.writers, declaration.spec.writes, {}, &std::pair<Kind, Format::Write>::first))
-        throw Error("module '{}' declares other readers or writers than it contains", module.string());
+        throw Error("module '{}' declares other functions than it contains", module.string());
     return declaration;
 }
 

@@ -16,10 +16,12 @@ struct FormatDeclaration {
     FormatSpec spec;
     Format::Read read;  ///< empty if the format is not read
     std::vector<std::pair<Kind, Format::Write>> writers;  ///< one for each kind of spec.writes
+    Format::MayStream may_stream = {};  ///< both empty if the format is not streamed
+    Format::OpenStream open_stream = {};
 };
 
-/// Loads the module scanmill-<name>.so. Throws Error under the conditions of load_declaration(), and if the readers and
-/// writers differ from those in the spec.
+/// Loads the module scanmill-<name>.so. Throws Error under the conditions of load_declaration(), and if its functions
+/// differ from those in the spec.
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name);
 
 /// The rows of the modules in the folder, sorted by name. An unusable module has a row, too: reading a file with its

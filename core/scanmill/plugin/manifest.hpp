@@ -33,13 +33,18 @@ struct FormatSpec {
     std::vector<Kind> writes;
     /// False for a format that is only written, for other programs.
     bool reads = true;
+    /// Whether files can be read piece by piece, see Format::open_stream.
+    bool streams = false;
+    /// See Format::memory_per_byte. The default is that of PCD; it is too low for compressed formats.
+    double memory_per_byte = 8;
 
     bool operator==(const FormatSpec&) const = default;
 };
 constexpr auto fields(const FormatSpec*) {
     using T = FormatSpec;
     return std::tuple{field("name", &T::name), field("extensions", &T::extensions), field("begins", &T::begins),
-                      field("writes", &T::writes), field("reads", &T::reads)};
+                      field("writes", &T::writes), field("reads", &T::reads),
+                      field("streams", &T::streams), field("memory-per-byte", &T::memory_per_byte)};
 }
 
 /// The declaration of a file format's module.

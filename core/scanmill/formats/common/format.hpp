@@ -72,6 +72,7 @@ struct Format {
     using Read = std::function<LoadedFile(const FileBytes& file, const ReadOptions& options)>;
     /// Pre: the value is of the kind that the writer is listed for, and has points; features may have none.
     using Write = std::function<void(const Value& value, OutputBuffer& out, const WriteOptions& options)>;
+    using MayStream = std::function<bool(std::string_view file)>;
     using OpenStream =
         std::function<std::unique_ptr<PointStream>(std::unique_ptr<MappedFile> file, const ReadOptions& options,
                                                    unsigned threads, const OnWorldPositions& on_positions)>;
@@ -89,7 +90,7 @@ struct Format {
     std::string unusable = {};
     /// Whether open_stream() may succeed; reads only the beginning and the end of the file. Both functions are empty
     /// for formats that cannot be streamed. They may throw Error for a file that `read` refuses as well.
-    std::function<bool(std::string_view file)> may_stream = {};
+    MayStream may_stream = {};
     /// Returns null for a file that cannot be streamed.
     OpenStream open_stream = {};
     /// The approximate memory, in bytes per byte of the file, for reading and for a tree over the points or the

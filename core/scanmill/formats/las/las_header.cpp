@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/las/detail/las_header.hpp"
+#include "scanmill/formats/las/las_header.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,9 @@
 namespace scanmill {
 
 namespace {
+
+constexpr std::size_t format_at = 104;
+constexpr u32 compression_bits = 0xc0;
 
 constexpr std::array<std::size_t, 11> point_sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
@@ -36,7 +39,6 @@ void require_valid(const LasHeader& header, std::string_view bytes) {
         throw Error("the points begin at byte {}, but the header has {} and the file {}", header.points_begin,
                     count_text(header.size, "byte", "bytes"), count_text(bytes.size(), "byte", "bytes"))
             .hint(truncated_hint);
-    if (header.is_compressed) return;  // refused later, with a hint
     if (header.point_size < point_sizes[header.point_format])
         throw Error("points of format {} take {} bytes or more; the header declares {}", header.point_format,
                     point_sizes[header.point_format], header.point_size)
@@ -83,6 +85,10 @@ bool LasHeader::has_wave_packets() const {
     return std::ranges::find(formats, point_format) != formats.end();
 }
 
+bool is_marked_compressed(std::string_view head) {
+    return head.size() > format_at && (little_endian<u8>(head.data() + format_at) & compression_bits) != 0;
+}
+
 LasHeader read_las_header(std::string_view bytes) {
     constexpr std::size_t versions_end = 96;
     if (bytes.size() < versions_end)
@@ -105,8 +111,7 @@ LasHeader read_las_header(std::string_view bytes) {
     header.software = text_at(bytes, 58, 32);
     header.points_begin = little_endian<u32>(at + 96);
     header.records = little_endian<u32>(at + 100);
-    const u32 format = little_endian<u8>(at + 104);
-    constexpr u32 compression_bits = 0xc0;
+    const u32 format = little_endian<u8>(at + format_at);
     header.is_compressed = (format & compression_bits) != 0;
     header.point_format = format & ~compression_bits;
     header.point_size = little_endian<std::uint16_t>(at + 105);
@@ -127,7 +132,7 @@ void require_las_points(const LasHeader& header, std::string_view bytes) {
     const std::size_t room = bytes.size() - header.points_begin;
     if (header.points == 0)
         throw Error("holds no points: its header declares 0, and {} follow it", count_text(room, "byte", "bytes"));
-    if (header.points > room / header.point_size)
+    if (!header.is_compressed && header.points > room / header.point_size)
         throw Error("promises {} of {} bytes; the {} from byte {} on hold {}",
                     count_text(header.points, "point", "points"), header.point_size, count_text(room, "byte", "bytes"),
                     header.points_begin, room / header.point_size)

@@ -32,7 +32,10 @@ struct LasHeader {
 /// scale or offset are invalid. Does not check the points: see require_las_points().
 LasHeader read_las_header(std::string_view bytes);
 
-/// Throws Error if the file has no points or is too short for all its points.
+/// Whether the point format in a header says that the points are compressed. `head` may be shorter than a header.
+bool is_marked_compressed(std::string_view head);
+
+/// Throws Error if the file has no points or, unless they are compressed, is too short for all its points.
 void require_las_points(const LasHeader& header, std::string_view bytes);
 
 /// A variable length record: its owner, its number and its content.

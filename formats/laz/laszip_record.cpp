@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "laz/laszip_record.hpp"
+
+#include <algorithm>
+
+namespace scanmill::laz {
+
+namespace {
+
+constexpr const char* newer_hint =
+    "convert the file with the program that wrote it, or with a new version of a free one: pdal translate in.laz "
+    "out.las";
+constexpr const char* damaged_hint = "the file is damaged: fetch or export it again";
+
+const LasRecord& require_record(const LasParts& parts) {
+    constexpr u32 laszip_id = 22204;
+    const auto is_laszip = [](const LasRecord& record) {
+        return record.user == "laszip encoded" && record.id == laszip_id;
+    };
+    const auto found = std::ranges::find_if(parts.records, is_laszip);
+    if (found == parts.records.end())
+        throw Error("its points are compressed, but none of its {} describes how: LASzip's record 'laszip encoded' {} "
+                    "is missing",
+                    count_text(parts.records.size(), "variable length record", "variable length records"), laszip_id)
+            .hint(damaged_hint);
+    return *found;
+}
+
+/// The versions of an item that LASzip's decoders know.
+bool is_known(const LASitem& item) {
+    switch (item.type) {
+        case LASitem::POINT10:
+        case LASitem::GPSTIME11:
+        case LASitem::RGB12:
+        case LASitem::BYTE: return item.version == 1 || item.version == 2;
+        case LASitem::WAVEPACKET13: return item.version == 1;
+        case LASitem::POINT14:
+        case LASitem::RGB14:
+        case LASitem::RGBNIR14:
+        case LASitem::BYTE14: return item.version >= 2 && item.version <= 4;
+        case LASitem::WAVEPACKET14: return item.version == 3 || item.version == 4;
+        default: return false;
+    }
+}
+
+void require_known_method(const LASzip& laszip) {
+    if (laszip.compressor < LASZIP_COMPRESSOR_POINTWISE || laszip.compressor >= LASZIP_COMPRESSOR_TOTAL_NUMBER_OF)
+        throw Error("its points are compressed by method {} of {}; methods 1 to {} are read", laszip.compressor,
+                    version_of(laszip), LASZIP_COMPRESSOR_TOTAL_NUMBER_OF - 1)
+            .hint(newer_hint);
+    if (laszip.coder != LASZIP_CODER_ARITHMETIC)
+        throw Error("its points are coded by coder {} of {}; coder {} is read", laszip.coder, version_of(laszip),
+                    LASZIP_CODER_ARITHMETIC)
+            .hint(newer_hint);
+}
+
+void require_items(const LASzip& laszip, const LasHeader& header) {
+    const auto refuse_layout = [&](const std::string& found) {
+        throw Error("LASzip's record describes {}; the header declares point format {} of {} bytes", found,
+                    header.point_format, header.point_size)
+            .hint(damaged_hint);
+    };
+    LASzip expected;
+    if (!expected.setup(static_cast<U8>(header.point_format), static_cast<U16>(header.point_size),
+                        LASZIP_COMPRESSOR_LAYERED_CHUNKED))
+        refuse_layout("an unknown point");
+    if (laszip.num_items != expected.num_items)
+        refuse_layout(count_text(laszip.num_items, "part of a point", "parts of a point") + " instead of " +
+                      std::to_string(expected.num_items));
+    for (U16 i = 0; i < laszip.num_items; ++i) {
+        const LASitem &item = laszip.items[i], &wanted = expected.items[i];
+        if (item.type != wanted.type || item.size != wanted.size)
+            refuse_layout(fmt::format("a part of type {} and {} bytes instead of type {} and {} bytes",
+                                      static_cast<int>(item.type), item.size, static_cast<int>(wanted.type),
+                                      wanted.size));
+        if (!is_known(item))
+            throw Error("its points are compressed by {} with part {} in version {}, which is unknown",
+                        version_of(laszip), static_cast<int>(item.type), item.version)
+                .hint(newer_hint);
+    }
+    if (has_layers(laszip) != (laszip.items[0].type == LASitem::POINT14))
+        refuse_layout(fmt::format("method {}, which has {}", laszip.compressor,
+                                  has_layers(laszip) ? "point formats 6 to 10" : "point formats 0 to 5"));
+}
+
+}  // namespace
+
+std::unique_ptr<LASzip> read_laszip_record(const LasParts& parts) {
+    constexpr std::size_t head_size = 34, item_size = 6;
+    const std::string_view content = require_record(parts).content;
+    const std::size_t items =
+        content.size() < head_size ? 0 : little_endian<std::uint16_t>(content.data() + head_size - 2);
+    // LASzip trusts the number of items.
+    if (items == 0 || content.size() != head_size + items * item_size)
+        throw Error("LASzip's record has {} for {}; it needs {}", count_text(content.size(), "byte", "bytes"),
+                    count_text(items, "part of a point", "parts of a point"),
+                    head_size + std::max<std::size_t>(items, 1) * item_size)
+            .hint(damaged_hint);
+    auto laszip = std::make_unique<LASzip>();
+    const bool is_unpacked =
+        laszip->unpack(reinterpret_cast<const U8*>(content.data()), static_cast<int>(content.size()));
+    require_known_method(*laszip);
+    if (!is_unpacked) throw Error("LASzip refuses its record: {}", laszip->get_error()).hint(newer_hint);
+    require_items(*laszip, parts.header);
+    if (!is_one_run(*laszip) && laszip->chunk_size == 0)
+        throw Error("LASzip's record declares chunks of 0 points").hint(damaged_hint);
+    return laszip;
+}
+
+std::string version_of(const LASzip& laszip) {
+    return fmt::format("LASzip {}.{}", laszip.version_major, laszip.version_minor);
+}
+
+}  // namespace scanmill::laz
