@@ -143,8 +143,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
 ///
 /// prepare_lines() in lines.hpp joins the points of the lines to the cloud, leaves out scan points beside them, divides
 /// long segments and leaves out segments that cross others or have no scan points near them. No triangle may cross or
-/// cover a segment, nor join points on its two sides (see edge_sides.hpp). Points within 1.5 spacings take the normal of
-/// their side. Creases beside segments that noise explains are left out (see creases.hpp). At segments, neither
+/// cover a segment, nor join points on its two sides (see edge_sides.hpp). Points within 1.5 spacings take the normal
+/// of their side. Creases beside segments that noise explains are left out (see creases.hpp). At segments, neither
 /// max_normal_angle nor the normals of points limit the angle between triangles.
 /// Segments that the growth misses are restored by restore_fixed_edges() in restored_edges.hpp. Each part of a divided
 /// segment counts as a segment.

@@ -23,8 +23,8 @@ std::size_t layers_of(const LASitem& item) {
 /// Room that LASzip needs for a part: it restores POINT14 as a larger struct.
 std::size_t room_of(const LASitem& item) { return item.type == LASitem::POINT14 ? 64 : item.size; }
 
-/// Converts LASzip's struct of a point of formats 6 to 10 to the 30 bytes of a LAS record. The struct has the old fields
-/// first, then the new ones from byte 20 and the time at byte 32.
+/// Converts LASzip's struct of a point of formats 6 to 10 to the 30 bytes of a LAS record. The struct has the old
+/// fields first, then the new ones from byte 20 and the time at byte 32.
 void put_point14(const U8* from, char* to) {
     constexpr std::size_t channel_and_flags = 22, classification = 23, returns = 24, time = 32;
     const u32 channel = from[channel_and_flags] >> 2 & 3u, flags = from[channel_and_flags] >> 4;
@@ -84,8 +84,8 @@ void ChunkDecoder::require_layers() const {
     u64 sum = head;
     for (std::size_t i = 0; i < layers; ++i) sum += little_endian<u32>(at + count_size + i * layer_size);
     if (sum != chunk_.bytes.size())
-        throw_damaged(fmt::format("its layers take {}, but it has {}", count_text(sum, "byte", "bytes"),
-                                  chunk_.bytes.size()));
+        throw_damaged(
+            fmt::format("its layers take {}, but it has {}", count_text(sum, "byte", "bytes"), chunk_.bytes.size()));
 }
 
 void ChunkDecoder::throw_damaged(const std::string& what) const {
@@ -115,8 +115,8 @@ void ChunkDecoder::require_end() const {
     if (!chunk_.is_whole) return;
     const auto used = static_cast<u64>(bytes_.tell()) - address_size;
     if (used != chunk_.bytes.size())
-        throw_damaged(fmt::format("its points end after {} of its {}", used,
-                                  count_text(chunk_.bytes.size(), "byte", "bytes")));
+        throw_damaged(
+            fmt::format("its points end after {} of its {}", used, count_text(chunk_.bytes.size(), "byte", "bytes")));
 }
 
 }  // namespace scanmill::laz

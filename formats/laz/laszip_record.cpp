@@ -19,9 +19,10 @@ const LasRecord& require_record(const LasParts& parts) {
     };
     const auto found = std::ranges::find_if(parts.records, is_laszip);
     if (found == parts.records.end())
-        throw Error("its points are compressed, but none of its {} describes how: LASzip's record 'laszip encoded' {} "
-                    "is missing",
-                    count_text(parts.records.size(), "variable length record", "variable length records"), laszip_id)
+        throw Error(
+            "its points are compressed, but none of its {} describes how: LASzip's record 'laszip encoded' {} "
+            "is missing",
+            count_text(parts.records.size(), "variable length record", "variable length records"), laszip_id)
             .hint(damaged_hint);
     return *found;
 }

@@ -38,8 +38,7 @@ void decompress(const LasParts& parts, unsigned threads, const Put& put) {
     const std::vector<Chunk> chunks = chunks_of(parts, *laszip);
     const std::size_t size = parts.header.point_size;
     const auto is_small = [&](const Chunk& chunk) { return chunk.points <= most_buffered / size; };
-    if (threads <= 1 || !std::ranges::all_of(chunks, is_small))
-        return decompress_serially(parts, *laszip, chunks, put);
+    if (threads <= 1 || !std::ranges::all_of(chunks, is_small)) return decompress_serially(parts, *laszip, chunks, put);
     for_each_in_order<Array<char>>(
         threads, chunks.size(),
         [&](std::size_t i, Array<char>& records) {
@@ -48,7 +47,9 @@ void decompress(const LasParts& parts, unsigned threads, const Put& put) {
             decoder.read(records);
             decoder.require_end();
         },
-        [&](std::size_t, const Array<char>& records) { put({records.data(), records.size()}); });
+        [&](std::size_t, const Array<char>& records) {
+            put({records.data(), records.size()});
+        });
 }
 
 }  // namespace

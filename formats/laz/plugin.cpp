@@ -6,7 +6,11 @@ SCANMILL_FORMAT() {
     using namespace scanmill;
     // A compressed point takes about 4 bytes; see Format::memory_per_byte for what it takes in memory.
     constexpr double memory_per_byte = 40;
-    return {{.name = "LAZ", .extensions = {"laz"}, .begins = {"LASF"}, .writes = {}, .streams = true,
+    return {{.name = "LAZ",
+             .extensions = {"laz"},
+             .begins = {"LASF"},
+             .writes = {},
+             .streams = true,
              .memory_per_byte = memory_per_byte},
             laz::read_laz,
             {},

@@ -41,27 +41,40 @@ Value without_invalid(const Value& value) {
     throw Error("--drop-invalid needs points or a mesh; the input contains {}", name_of(value.kind()));
 }
 
-int convert(const Options& options) {
+/// Converts the file, or the view of a file, that `from` names.
+void convert_one(const Options& options, const std::filesystem::path& from, const std::filesystem::path& to) {
     ReadOptions read;
     WriteOptions write;
     read.on_warning = write.on_warning = warning_printer();
     read.unit = options.unit;
+    if (std::error_code absent; std::filesystem::equivalent(file_view(from).file, to, absent))
+        throw Error("'{}' is the input; the output must not replace it", to.string());
+    require_memory_to_read(from, available_memory());
+    Value value = read_file(from, read).value;
+    if (options.drop_invalid) value = without_invalid(value);
+    if (options.to_unit != LengthUnit::unknown) {
+        const std::optional<Frame> frame = frame_of(value);
+        if (!frame)
+            throw Error("--to-unit converts values with positions; the input contains {}", name_of(value.kind()));
+        if (frame->unit == LengthUnit::unknown)
+            throw Error("--to-unit {}: the unit of the input is not known", symbol(options.to_unit))
+                .hint("give it with --unit");
+        value = in_unit(value, options.to_unit);
+    }
+    write_file(to, value, write);
+}
+
+int convert(const Options& options) {
     try {
-        if (std::error_code absent; std::filesystem::equivalent(options.from, options.to, absent))
-            throw Error("'{}' is the input; the output must not replace it", options.to);
-        require_memory_to_read(options.from, available_memory());
-        Value value = read_file(options.from, read).value;
-        if (options.drop_invalid) value = without_invalid(value);
-        if (options.to_unit != LengthUnit::unknown) {
-            const std::optional<Frame> frame = frame_of(value);
-            if (!frame)
-                throw Error("--to-unit converts values with positions; the input contains {}", name_of(value.kind()));
-            if (frame->unit == LengthUnit::unknown)
-                throw Error("--to-unit {}: the unit of the input is not known", symbol(options.to_unit))
-                    .hint("give it with --unit");
-            value = in_unit(value, options.to_unit);
+        const std::filesystem::path to = options.to;
+        const u32 views = file_view(options.from).view > 0 ? 1 : count_views(options.from);
+        for (u32 view = 1; view <= views && views > 1; ++view) {
+            const std::filesystem::path file =
+                to.parent_path() / fmt::format("{}-{}{}", to.stem().string(), view, to.extension().string());
+            convert_one(options, view_name(options.from, view), file);
+            print_stderr("wrote '{}'\n", printable_line(file.string()));
         }
-        write_file(options.to, value, write);
+        if (views == 1) convert_one(options, options.from, to);
     } catch (const Error& error) {
         print(error, false);
         return some_failed;
@@ -74,8 +87,12 @@ int convert(const Options& options) {
 void add_convert(CLI::App& app, Action& chosen) {
     auto [command, options] = add_command<Options>(
         app, chosen, "convert", "Writes a scan or mesh in the format of the output's extension", convert);
-    command.add_option("FROM", options.from, "The file to read")->required();
-    command.add_option("TO", options.to, "The file to write")->required();
+    command.add_option("FROM", options.from, "The file to read; FILE#2 is the second view of a file with several")
+        ->required();
+    command
+        .add_option("TO", options.to,
+                    "The file to write; for a FROM with several views, TO-1, TO-2, … before the extension")
+        ->required();
     add_unit_option(command, "--unit", options.unit, "The input's unit of length");
     add_unit_option(command, "--to-unit", options.to_unit, "Convert the coordinates to this unit");
     command.add_flag("--drop-invalid", options.drop_invalid,

@@ -215,7 +215,7 @@ void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
     // Warnings of readers begin with the file's path. If a file is used for two inputs, it is read twice.
     if (!node.step && !read_.insert(std::string(text)).second) return;
-    const std::string file = node.leaf.file.string(), begin = "'" + file + "': ";
+    const std::string file = node.leaf.name(), begin = "'" + file + "': ";
     if (const auto list = list_of_.find(graph_.index(node)); list != list_of_.end() && text.starts_with(begin)) {
         std::vector<ListedFiles::Repeated>& warnings = lists_.at(list->second).warnings;
         const std::string sentence(text.substr(begin.size()));

@@ -163,9 +163,8 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>&
     const bool several_workflows = has_several_workflows(graph);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
-        text +=
-            fmt::format("{:>4}. {} {}{}{}\n", index + 1, node.key.substr(0, 8), graph.label(node),
-                        node.step ? "" : " " + node.leaf.file.string(), node.leaf.is_streamed ? ", as a stream" : "");
+        text += fmt::format("{:>4}. {} {}{}{}\n", index + 1, node.key.substr(0, 8), graph.label(node),
+                            node.step ? "" : " " + node.leaf.name(), node.leaf.is_streamed ? ", as a stream" : "");
         for (const NodeInput& input : node.inputs)
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
@@ -189,7 +188,7 @@ Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predic
         const RunNode& node = graph.nodes[index];
         Json entry{{"key", node.key}, {"step", graph.label(node)}, {"in", Json::array()}};
         if (!node.step) {
-            entry["file"] = node.leaf.file.string();
+            entry["file"] = node.leaf.name();
             entry["streamed"] = node.leaf.is_streamed;
         }
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;

@@ -71,7 +71,7 @@ std::string StepNames::scan(const RunNode& node) const {
 
 std::string StepNames::step(const RunNode& node) const {
     return node.step ? fmt::format("{}: {}", scan(node), graph_.label(node))
-                     : fmt::format("{}: read", node.leaf.file.string());
+                     : fmt::format("{}: read", node.leaf.name());
 }
 
 }  // namespace scanmill::runner

@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 19> table{{
+    static constexpr std::array<FuzzTarget, 20> table{{
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -20,6 +20,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"dmi", [](std::string_view bytes) { return read_scan("dmi", bytes); }},
         {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
         {"png", [](std::string_view bytes) { return read_scan("png", bytes); }},
+        {"e57", read_e57},
         {"workflow", check_workflow_text},
         {"batch", check_batch_text},
         {"setting", check_setting},

@@ -33,6 +33,8 @@ inline void require_law(bool holds, const std::string& law) {
 /// Reads the bytes as a scan called "scan.EXTENSION"; what was read is consistent, and comes back from every format
 /// that can carry it.
 bool read_scan(std::string_view extension, std::string_view bytes);
+/// Reads the bytes as an E57 file, as they are and with the checksums and the size that its content needs.
+bool read_e57(std::string_view bytes);
 /// Opens the bytes as a stream of the points in "scan.EXTENSION"; returns whether there is one. Its points and warnings
 /// must be those of reading the file. read_scan() runs this as well.
 bool read_stream(std::string_view extension, std::string_view bytes);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/files.hpp"
 
+#include <algorithm>
+
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
@@ -29,7 +31,10 @@ LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     const std::optional<Array<char>> content = unwrapped(file.bytes, on_warning);
     FileBytes plain{file.path, content ? std::string_view(content->data(), content->size()) : file.bytes};
     if (is_marked_text(plain.bytes)) plain.bytes = without_byte_order_mark(plain.bytes);
-    LoadedFile loaded = format_of(plain).read(plain, {on_warning, options.unit});
+    const Format& format = format_of(plain);
+    if (options.view > 1 && !format.count_views)
+        throw Error("has no view {}: {} files hold one", options.view, format.name);
+    LoadedFile loaded = format.read(plain, {on_warning, options.unit, true, options.view});
     if (content) loaded.encoding += wrapping_of(file.bytes) == Wrapping::gzip ? ", gzip" : ", UTF-16";
     return loaded;
 }
@@ -57,14 +62,29 @@ Format::Write writer_for(const std::filesystem::path& path, const Value& value) 
 
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options) {
     return with_file_name(path, [&] {
-        const MappedFile file(path);
-        return read_named({path, file.bytes()}, options);
+        const FileView source = file_view(path);
+        const MappedFile file(source.file);
+        ReadOptions of_view = options;
+        if (source.view > 0) of_view.view = source.view;
+        return read_named({path, file.bytes()}, of_view);
     });
+}
+
+u32 count_views(const std::filesystem::path& path) {
+    try {
+        const MappedFile file(path, false);
+        const std::optional<Array<char>> content = unwrapped(file.bytes());
+        const FileBytes plain{path, content ? std::string_view(content->data(), content->size()) : file.bytes()};
+        const Format& format = format_of(plain);
+        return format.count_views ? std::max(1u, format.count_views(plain.bytes)) : 1;
+    } catch (const Error&) {
+        return 1;  // read_file() throws the Error again, with the file's name
+    }
 }
 
 u64 memory_to_read(const std::filesystem::path& path) {
     try {
-        const MappedFile file(path, false);
+        const MappedFile file(file_view(path).file, false);
         const double per_byte = wrapping_of(file.bytes()) == Wrapping::none
                                     ? format_of({path, file.bytes()}).memory_per_byte
                                     : Format().memory_per_byte;
@@ -78,7 +98,8 @@ void require_memory_to_read(const std::filesystem::path& path, u64 available) {
     const u64 need = memory_to_read(path);
     if (need <= available) return;
     throw Error("'{}': it has {}; reading it needs up to {} of memory, and {} are available", path.string(),
-                byte_size_text(std::filesystem::file_size(path)), byte_size_text(need), byte_size_text(available))
+                byte_size_text(std::filesystem::file_size(file_view(path).file)), byte_size_text(need),
+                byte_size_text(available))
         .hint(
             "thin or split it first, use a machine with more memory, or store points as binary PLY with vertices "
             "only, which is read piece by piece where the workflow allows it");
@@ -133,7 +154,9 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
                                                unsigned threads, const OnWorldPositions& on_positions) {
     try {
-        auto file = std::make_unique<MappedFile>(path, false);
+        const FileView source = file_view(path);
+        if (source.view > 1) return nullptr;  // no streamed format holds several
+        auto file = std::make_unique<MappedFile>(source.file, false);
         if (wrapping_of(file->bytes()) != Wrapping::none) return nullptr;
         const Format& format = format_of({path, file->bytes()});
         if (format.open_stream)
@@ -147,7 +170,9 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
 
 bool may_be_point_stream(const std::filesystem::path& path) {
     try {
-        const MappedFile file(path, false);
+        const FileView source = file_view(path);
+        if (source.view > 1) return false;
+        const MappedFile file(source.file, false);
         if (wrapping_of(file.bytes()) != Wrapping::none) return false;
         const Format& format = format_of({path, file.bytes()});
         return format.may_stream && format.may_stream(file.bytes());

@@ -18,8 +18,14 @@
 
 namespace scanmill {
 
-/// Reads the whole file. A mesh file without a single face is a point cloud.
+/// Reads the whole file, or one of its views: `path` may be the name of a view, as may the paths of all functions
+/// below that read (see file_view()); ReadOptions::view is then that view. Throws Error for a view that the file does
+/// not have. A mesh file without a single face is a point cloud.
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The number of views in the file, at least 1. It is 1 for a file that read_file() refuses. Runs no library of other
+/// programs on the file's content, unless the file is compressed.
+u32 count_views(const std::filesystem::path& file);
 
 /// The same from memory. `name` replaces the path in messages, and its extension is used as the file's.
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options = {});

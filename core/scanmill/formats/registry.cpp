@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <iterator>
+#include <optional>
 
 #include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/reading.hpp"
@@ -13,7 +15,7 @@ namespace scanmill {
 
 namespace {
 
-/// E57 (ASTM E2807), the exchange format of terrestrial scanners: recognised, so that its refusal can name a converter.
+/// E57 (ASTM E2807), where its module was not built: recognised, so that its refusal can name a converter.
 Format e57_format() {
     static constexpr std::string_view magic = "ASTM-E57";
     const auto recognise = [](std::string_view head, u64) {
@@ -21,7 +23,7 @@ Format e57_format() {
     };
     const auto refuse = [](const FileBytes& file, const ReadOptions&) -> LoadedFile {
         if (!file.bytes.starts_with(magic)) throw Error("is not an E57 file: it does not begin with {}", magic);
-        throw Error("is an E57 file; E57 is not read")
+        throw Error("is an E57 file; E57 is not read, because its module was not built")
             .hint(fmt::format("convert it with a free program: CloudCompare -SILENT -O {0} -C_EXPORT_FMT PLY "
                               "-SAVE_CLOUDS, or: pdal translate {0} out.las",
                               shell_word(file.path)));
@@ -38,13 +40,44 @@ std::string plain_extension(std::string_view extension) {
     return plain;
 }
 
+namespace {
+
+/// The parts of a name that ends in '#' and a number: "a.e57" and "2" of "a.e57#2". Empty for other names.
+std::optional<std::pair<std::string, std::string>> parts_of_view(const std::string& name) {
+    const std::size_t mark = name.rfind('#');
+    if (mark == std::string::npos || mark == 0 || mark + 1 == name.size()) return std::nullopt;
+    std::string number = name.substr(mark + 1);
+    const bool is_number = number.find_first_not_of("0123456789") == std::string::npos && number[0] != '0';
+    if (!is_number) return std::nullopt;
+    return std::pair(name.substr(0, mark), std::move(number));
+}
+
+}  // namespace
+
+FileView file_view(const std::filesystem::path& name) {
+    std::error_code ignored;
+    const auto parts = parts_of_view(name.string());
+    if (!parts || std::filesystem::exists(name, ignored) || !std::filesystem::is_regular_file(parts->first, ignored))
+        return {name, 0};
+    u32 view = 0;
+    const std::string& number = parts->second;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), view);
+    return error == std::errc() ? FileView{parts->first, view} : FileView{name, 0};
+}
+
+std::filesystem::path view_name(const std::filesystem::path& file, u32 view) {
+    return view == 0 ? file : std::filesystem::path(file.string() + "#" + std::to_string(view));
+}
+
 std::string extension_of(const std::filesystem::path& path) {
+    if (const auto parts = parts_of_view(path.filename().string())) return extension_of(parts->first);
     std::string extension = plain_extension(path.extension().string());
     if (extension == "gz") extension = plain_extension(path.stem().extension().string());
     return extension;
 }
 
 std::string stem_of(const std::filesystem::path& path) {
+    if (const auto parts = parts_of_view(path.filename().string())) return stem_of(parts->first) + "-" + parts->second;
     const std::filesystem::path stem = path.stem();
     return plain_extension(path.extension().string()) == "gz" ? stem.stem().string() : stem.string();
 }
@@ -63,9 +96,10 @@ std::span<const Format> formats() {
     static const std::vector<Format> table = [] {
         std::vector<Format> rows{ply_format(), stl_format(), off_format(), obj_format()};
         std::ranges::move(text_formats(), std::back_inserter(rows));
-        for (const auto& format : {probes_csv_format, ptx_format, las_format, e57_format, dmis_format, json_format})
+        for (const auto& format : {probes_csv_format, ptx_format, las_format, dmis_format, json_format})
             rows.push_back(format());
         std::ranges::move(module_formats(), std::back_inserter(rows));
+        if (std::ranges::find(rows, "E57", &Format::name) == rows.end()) rows.push_back(e57_format());
         return rows;
     }();
     return table;

@@ -60,6 +60,8 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
             return module->declaration().open_stream(std::move(file), options, threads, on_positions);
         };
     }
+    if (spec.has_views)
+        row.count_views = [module](std::string_view file) { return module->declaration().count_views(file); };
     for (std::size_t i = 0; i < spec.writes.size(); ++i)
         row.writers.emplace_back(spec.writes[i],
                                  [module, i](const Value& value, OutputBuffer& out, const WriteOptions& options) {
@@ -87,9 +89,9 @@ Format unusable_row(const std::string& name, const std::filesystem::path& manife
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name) {
     FormatDeclaration declaration;
     load_declaration(module, "scanmill-format", "file format", name, &declaration);
-    if (bool(declaration.read) != declaration.spec.reads ||
-        bool(declaration.may_stream) != declaration.spec.streams ||
+    if (bool(declaration.read) != declaration.spec.reads || bool(declaration.may_stream) != declaration.spec.streams ||
         bool(declaration.open_stream) != declaration.spec.streams ||
+        bool(declaration.count_views) != declaration.spec.has_views ||
         !std::ranges::equal(declaration.writers, declaration.spec.writes, {}, &std::pair<Kind, Format::Write>::first))
         throw Error("module '{}' declares other functions than it contains", module.string());
     return declaration;

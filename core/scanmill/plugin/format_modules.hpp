@@ -18,6 +18,7 @@ struct FormatDeclaration {
     std::vector<std::pair<Kind, Format::Write>> writers;  ///< one for each kind of spec.writes
     Format::MayStream may_stream = {};  ///< both empty if the format is not streamed
     Format::OpenStream open_stream = {};
+    std::function<u32(std::string_view file)> count_views = {};  ///< see Format::count_views; only if spec.has_views
 };
 
 /// Loads the module scanmill-<name>.so. Throws Error under the conditions of load_declaration(), and if its functions

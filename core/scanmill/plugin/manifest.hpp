@@ -37,14 +37,21 @@ struct FormatSpec {
     bool streams = false;
     /// See Format::memory_per_byte. The default is that of PCD; it is too low for compressed formats.
     double memory_per_byte = 8;
+    /// Whether a file may hold several views (see Format::count_views).
+    bool has_views = false;
 
     bool operator==(const FormatSpec&) const = default;
 };
 constexpr auto fields(const FormatSpec*) {
     using T = FormatSpec;
-    return std::tuple{field("name", &T::name), field("extensions", &T::extensions), field("begins", &T::begins),
-                      field("writes", &T::writes), field("reads", &T::reads),
-                      field("streams", &T::streams), field("memory-per-byte", &T::memory_per_byte)};
+    return std::tuple{field("name", &T::name),
+                      field("extensions", &T::extensions),
+                      field("begins", &T::begins),
+                      field("writes", &T::writes),
+                      field("reads", &T::reads),
+                      field("streams", &T::streams),
+                      field("memory-per-byte", &T::memory_per_byte),
+                      field("has-views", &T::has_views)};
 }
 
 /// The declaration of a file format's module.

@@ -143,7 +143,7 @@ std::vector<fs::path> scan_files(const fs::path& folder, const std::string& patt
     if (pattern.empty()) throw Error("the path is empty; expected a file, or several as 'scans/*.ply'");
     if (pattern.find('\0') != std::string::npos) throw Error("the path has a zero byte");
     const fs::path whole = folder / pattern;
-    if (is_file(whole)) return {whole};
+    if (is_file(whole) || file_view(whole).view > 0) return {whole};
     if (is_folder(whole))
         throw Error("'{}' is a folder; expected files, as '{}'", pattern, (fs::path(pattern) / "*.ply").string());
     if (std::error_code ignored; fs::exists(whole, ignored))
@@ -262,7 +262,7 @@ const ScanPose& pose_of(const fs::path& scan, const std::vector<ScanPose>& poses
     std::vector<const ScanPose*> fitting;
     for (const ScanPose& pose : poses) {
         if (!pose.scan.empty()) names.push_back(pose.scan);
-        if (is_of(pose, scan.filename().string()) || is_of(pose, scan.stem().string())) fitting.push_back(&pose);
+        if (is_of(pose, scan.filename().string()) || is_of(pose, stem_of(scan))) fitting.push_back(&pose);
     }
     const std::string name = scan.filename().string();
     if (fitting.size() == 1) return *fitting.front();
@@ -400,7 +400,7 @@ private:
     /// A sentence that explains why `file`, which `scan` needs, is missing; nothing if the file exists. `what`: "the
     /// truth".
     static std::optional<std::string> missing(const fs::path& file, std::string_view what, const BatchScan& scan) {
-        if (const std::optional<Error> other = why_no_file(file))
+        if (const std::optional<Error> other = why_no_file(file_view(file).file))
             return fmt::format("{}; expected {} of '{}'", other->sentence(), what, scan.file.string());
         return std::nullopt;
     }

@@ -88,6 +88,7 @@ Json file_info(const std::string& file, u64 memory) {
     for (const Metric& property : properties_of(value).values)
         json[property.name] =
             property.unit == Unit::boolean ? Json(property.value != 0) : Json(static_cast<long long>(property.value));
+    if (const u32 views = file_view(file).view > 0 ? 1 : count_views(file); views > 1) json["views"] = views;
     ListColumns columns(json);
     visited(value, columns);
     const Buffer<Vec3> positions = positions_of(value);

@@ -88,6 +88,7 @@ Json info_schema() {
                         {"format?", text()},
                         {"encoding?", text()},
                         {"kind", text()},
+                        {"views?", described("Number of views in the file; absent if there is one.", count())},
                         {"low?", position},
                         {"high?", position},
                         {"diagonal?", number()},

@@ -17,6 +17,7 @@
 #include "scanmill/base/hash.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/transform.hpp"
+#include "scanmill/formats/common/format.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "scanmill/record/fields.hpp"
@@ -27,7 +28,7 @@ namespace scanmill {
 struct ScanFile {
     ScanFile(std::filesystem::path file) : path(std::move(file)) {}
 
-    std::filesystem::path path;
+    std::filesystem::path path;  ///< a file, or the name of one of its views (see file_view())
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
@@ -39,7 +40,9 @@ struct ScanFile {
 
 /// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
 struct RunRequest {
-    std::vector<ScanFile> scans;  ///< for the first input: one per run, or all in one run if the input is a list
+    /// For the first input: one per run, or all in one run if the input is a list. In a list, a file of several views
+    /// stands for all of them; otherwise its views are read as one value.
+    std::vector<ScanFile> scans;
     /// Files for inputs other than the first, used in every run. An input that is absent here takes ScanFile::inputs of
     /// the scan, or of the first scan if the first input is a list.
     std::map<std::string, std::vector<std::filesystem::path>> inputs;
@@ -86,6 +89,10 @@ struct LeafSource {
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
     std::string pose_refusal{};  ///< reason of a refused pose; if not empty, reading fails with it
+    u32 view = 0;  ///< from 1, of a file that holds several; 0: the whole file
+
+    /// The name of what is read, for messages and read_file(): the file, or FILE#2.
+    std::string name() const { return view_name(file, view).string(); }
 };
 constexpr auto fields(const LeafSource*) {
     using R = LeafSource;
@@ -93,7 +100,8 @@ constexpr auto fields(const LeafSource*) {
                       field("kind", &R::kind),       field("unit", &R::unit),
                       field("frame", &R::frame),     field("pose", &R::pose),
                       field("invalid", &R::invalid), field("is-streamed", &R::is_streamed),
-                      field("also", &R::also),       field("pose-refusal", &R::pose_refusal)};
+                      field("also", &R::also),       field("pose-refusal", &R::pose_refusal),
+                      field("view", &R::view)};
 }
 
 /// Declared unit, frame, pose and rule for invalid rows as (name, text).

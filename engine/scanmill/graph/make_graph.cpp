@@ -63,6 +63,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("frame", leaf.frame)
         .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.pose_refusal)
         .field("invalid", name_of(leaf.invalid));
+    if (leaf.view > 0) key.field("view", std::to_string(leaf.view));
     for (const Kind kind : leaf.also) key.field("also", name_of(kind));
     return key.key();
 }
@@ -276,9 +277,10 @@ private:
         if (source.step) return {node_of_step.at(*source.step)};
         const WorkflowInput& input = plan_->workflow.inputs[source.input];
         if (source.input == 0 && !input.list) return {add_leaf(0, scan, *file, cell)};
+        std::vector<ScanFile> files = source.input == 0 ? request_->scans : files_of(input.name, file);
+        if (input.list) files = views_of(files);
         std::vector<std::size_t> leaves;
-        for (const ScanFile& each : source.input == 0 ? request_->scans : files_of(input.name, file))
-            leaves.push_back(add_leaf(source.input, scan, each, cell));
+        for (const ScanFile& each : files) leaves.push_back(add_leaf(source.input, scan, each, cell));
         return leaves;
     }
 
@@ -289,14 +291,34 @@ private:
         return (file ? *file : request_->scans.front()).inputs.at(input);
     }
 
+    /// The files, with every view of a file in place of the file.
+    std::vector<ScanFile> views_of(const std::vector<ScanFile>& files) {
+        std::vector<ScanFile> views;
+        for (const ScanFile& file : files) {
+            if (file_view(file.path).view > 0) {
+                views.push_back(file);
+                continue;
+            }
+            const auto [found, is_new] = views_in_.try_emplace(file.path.string(), 1);
+            if (is_new) found->second = count_views(file.path);
+            for (u32 view = 1; view <= found->second; ++view) {
+                views.push_back(file);
+                if (found->second > 1) views.back().path = view_name(file.path, view);
+            }
+        }
+        return views;
+    }
+
     std::size_t add_leaf(std::size_t input, std::size_t scan, const ScanFile& file, RunCell& cell) {
         const WorkflowInput& declared = plan_->workflow.inputs[input];
         RunNode node;
         node.plan = graph_.plans.size() - 1;
         node.is_scan = input == 0;
         node.scan = scan;
-        node.leaf.file = file.path;
-        const FileContents::Content& content = contents_.of(file.path);
+        const FileView source = file_view(file.path);
+        node.leaf.file = source.file;
+        node.leaf.view = source.view;
+        const FileContents::Content& content = contents_.of(source.file);
         node.leaf.content = content.hash;
         node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.pose_refusal;
         node.leaf.kind = declared.kind;
@@ -342,6 +364,7 @@ private:
     KeyBase base_;
     OutputFiles output_files_;
     RunGraph graph_;
+    std::map<std::string, u32> views_in_;  // by path
     std::map<std::string, std::size_t> node_of_key_;  // by plan key and expectations
     std::map<std::string, std::size_t> scan_of_name_;
 };

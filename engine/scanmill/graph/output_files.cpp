@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill {
 
@@ -37,7 +38,8 @@ fs::path real_folder(const fs::path& path) {
 
 OutputFiles::OutputFiles(const fs::path& folder) : folder_(real_folder(folder)), names_(folder_) {}
 
-void OutputFiles::protect(const fs::path& file) {
+void OutputFiles::protect(const fs::path& name) {
+    const fs::path file = file_view(name).file;
     if (const Identity existing = identity(file); existing != Identity()) {
         inputs_.insert(existing);
         return;

@@ -52,7 +52,7 @@ void mark_streams(RunGraph& graph) {
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         RunNode& node = graph.nodes[index];
         node.leaf.is_streamed = !node.step && readers[index].all_stream() && node.leaf.kind == kind_of<PointCloud>() &&
-                                !node.leaf.pose && node.unreadable.empty() && may_be_point_stream(node.leaf.file);
+                                !node.leaf.pose && node.unreadable.empty() && may_be_point_stream(node.leaf.name());
     }
 }
 

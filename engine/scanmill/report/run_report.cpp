@@ -27,7 +27,7 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
         step.build = std::move(build);
         step.authored = texts_of(planned->parameters);
     } else {
-        step.file = node.leaf.file.string();
+        step.file = node.leaf.name();
         step.authored = declared_of(node.leaf);
     }
     step.origin = report.origin;

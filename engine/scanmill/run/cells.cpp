@@ -14,7 +14,7 @@ namespace scanmill {
 std::string frame_of(const RunGraph& graph, std::size_t index) {
     const RunNode& node = graph.nodes[index];
     const PlannedStep* step = graph.step(node);
-    if (!step) return fmt::format("while reading '{}'", node.leaf.file.string());
+    if (!step) return fmt::format("while reading '{}'", node.leaf.name());
     if (step->position.line == 0)
         return fmt::format("in step '{}'", step->label);  // the step does not come from a file
     return fmt::format("in step '{}' ({}:{}:{})", step->label,

@@ -206,7 +206,7 @@ private:
         done.node.origin = Origin::cached;
         done.node.outcome = Outcome::ok;
         scanmill::adopt(*prediction_[index].cached, graph_.step(node), done.node);
-        if (!node.step) done.node.warnings = warnings_about(node.leaf.file, std::move(done.node.warnings));
+        if (!node.step) done.node.warnings = warnings_about(node.leaf.name(), std::move(done.node.warnings));
         for (const std::string& warning : done.node.warnings) notify(&RunObserver::node_warning, node, warning);
         finish_node(index, std::move(done));
     }

@@ -94,7 +94,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
         } else {
             // Scans of equal content share one node, whose leaf names only the first scan.
             const bool is_this_scan = made.is_scan && !graph.plans[cell.plan]->workflow.inputs.front().list;
-            entry["file"] = is_this_scan ? graph.scan_names[cell.scan] : made.leaf.file.string();
+            entry["file"] = is_this_scan ? graph.scan_names[cell.scan] : made.leaf.name();
             entry["content"] = made.leaf.content;
             for (const auto& [name, value] : declared_of(made.leaf)) entry[name] = value;
         }

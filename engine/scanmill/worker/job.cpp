@@ -27,7 +27,7 @@ std::string work_key(const PlannedStep& step, const std::string& code, const Par
 Failure failure_of(const Job& job, Cause cause, Error error, int number) {
     std::string scan = job.scan;
     if (const auto* reading = std::get_if<ReadWork>(&job.work)) {
-        const std::string file = reading->leaf.file.string();
+        const std::string file = reading->leaf.name();
         if (cause != Cause::refused)
             error.add_frame(fmt::format("while reading '{}'", file));
         else if (file == job.scan)

@@ -247,20 +247,20 @@ Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t
     const ReadOptions options = reading(leaf, on_warning);
     Value value;
     LoadedFile loaded = leaf.also.empty() && leaf.kind == kind_of<TriangleMesh>()
-                            ? LoadedFile{Value(read_mesh(leaf.file, options)), {}, {}, {}}
-                            : read_file(leaf.file, options);
+                            ? LoadedFile{Value(read_mesh(leaf.name(), options)), {}, {}, {}}
+                            : read_file(leaf.name(), options);
     const bool is_other_kind = std::ranges::find(leaf.also, loaded.value.kind()) != leaf.also.end();
     if ((is_other_kind ? loaded.value.kind() : leaf.kind) == kind_of<PointCloud>()) {
-        Cleaned<PointCloud> scan = accepted_points(loaded, leaf.file, options, leaf.invalid);
+        Cleaned<PointCloud> scan = accepted_points(loaded, leaf.name(), options, leaf.invalid);
         loaded = {};  // two copies of a large scan may not fit into memory
         if (dropped) *dropped = scan.points;
         value = std::make_shared<const PointCloud>(std::move(scan.result));
     } else {
         value = std::move(loaded.value);
         if (value.kind() != leaf.kind && !is_other_kind)
-            throw Error("'{}': the workflow needs {}; the file contains {}", leaf.file.string(), leaf.kind.name(),
+            throw Error("'{}': the workflow needs {}; the file contains {}", leaf.name(), leaf.kind.name(),
                         value.kind().name());
-        naming_file(leaf.file, [&] { require_supported_range(bounding_box(positions_of(value).span())); });
+        naming_file(leaf.name(), [&] { require_supported_range(bounding_box(positions_of(value).span())); });
     }
     if (leaf.pose) value = placed(value, *leaf.pose);
     std::optional<Frame> frame = frame_of(value);
@@ -270,7 +270,8 @@ Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t
 std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned threads, const OnWarning& on_warning,
                                              const OnWorldPositions& on_positions) {
     assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
-    std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
+    std::shared_ptr<PointStream> scan =
+        open_point_stream(leaf.name(), reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
     if (is_too_long(scan->bounds())) return nullptr;  // the file may have invalid rows
     naming_file(leaf.file, [&] { require_supported_range(scan->bounds()); });

@@ -236,7 +236,7 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     CountedWarnings warnings;
     const auto on_warning = [&](const std::string& text) { warnings.add(text); };
     const auto report_warnings = [&] {
-        report.node.warnings = warnings_about(work.leaf.file, warnings.sentences());
+        report.node.warnings = warnings_about(work.leaf.name(), warnings.sentences());
         for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     };
     if (work.leaf.is_streamed && read_as_stream(job, work, listener, warnings, report_warnings, report)) return;

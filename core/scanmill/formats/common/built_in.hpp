@@ -104,6 +104,7 @@ Format probes_csv_format();
 /// result is one cloud of the mapped points with these columns. `intensity` is float64. `colour` is present if every
 /// scan has colours (see text_columns()). `approach` (3 × float32) is the unit vector from a point to its scanner, or
 /// (0, 0, 0) for a point without a finite position. With several scans, `scan` (uint32) is the scan of a point, from 0.
+/// Each scan is a view (see Format::count_views).
 /// Cells at 0 0 0 are not points: they are left out and counted. The grid itself is not kept. A matrix that scales,
 /// shears or mirrors is applied with a warning. A matrix that is singular, not finite or not affine is an Error.
 Format ptx_format();

@@ -27,6 +27,8 @@ struct ReadOptions {
     /// The unit of the coordinates. Unless unknown, it overrides the unit that the file declares.
     LengthUnit unit = LengthUnit::unknown;
     bool names_file = true;  ///< whether warnings begin with the file's name
+    /// The view to read from a file that holds several (see Format::count_views), from 1. 0: all views, as one value.
+    u32 view = 0;
 };
 
 struct LoadedFile {
@@ -93,6 +95,10 @@ struct Format {
     MayStream may_stream = {};
     /// Returns null for a file that cannot be streamed.
     OpenStream open_stream = {};
+    /// The number of views in a file: scans that were measured from different stations. Runs in the planning process,
+    /// so it must not call libraries that `read` isolates in workers. Empty for formats with one view per file. May
+    /// throw Error for a file that `read` refuses.
+    std::function<u32(std::string_view file)> count_views = {};
     /// The approximate memory, in bytes per byte of the file, for reading and for a tree over the points or the
     /// topology of the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed
     /// mesh 90.
@@ -105,9 +111,22 @@ struct Format {
 
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.
 std::string plain_extension(std::string_view extension);
-/// The extension that readers see, in the form of plain_extension(): "xyz" for scan.xyz and for scan.xyz.gz.
+
+/// A file, or one view of a file that holds several.
+struct FileView {
+    std::filesystem::path file;
+    u32 view = 0;  ///< from 1; 0: the whole file
+};
+/// What users mean by a name: the view 2 of a.e57 by "a.e57#2", if there is no file of that name and a.e57 is a file.
+/// Otherwise the file `name`.
+FileView file_view(const std::filesystem::path& name);
+/// The name that file_view() splits: "a.e57#2". The file itself for view 0.
+std::filesystem::path view_name(const std::filesystem::path& file, u32 view);
+
+/// The extension that readers see, in the form of plain_extension(): "xyz" for scan.xyz, for scan.xyz.gz and for
+/// scan.xyz#2.
 std::string extension_of(const std::filesystem::path& path);
-/// The file's name without the extension and without a `.gz` after it: "scan".
+/// The file's name without the extension and without a `.gz` after it: "scan". "scan-2" for a view, scan.e57#2.
 std::string stem_of(const std::filesystem::path& path);
 
 /// Every format, in the order of trials and lists: built-in formats, then the formats of modules.

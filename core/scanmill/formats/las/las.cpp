@@ -90,17 +90,18 @@ LoadedFile read_las(const FileBytes& file, const ReadOptions& options, const Laz
         laz->decompress(content.parts, 1, [&](std::string_view records) { pieces.add_copy(records); });
     else
         pieces.add_all(content.points());
-    return {std::make_shared<const PointCloud>(cloud_of(content, pieces, options)),
-            laz ? "LAZ" : "LAS",
+    return {std::make_shared<const PointCloud>(cloud_of(content, pieces, options)), laz ? "LAZ" : "LAS",
             fmt::format("{}binary little-endian, 1.{}, point format {}", compression, header.minor_version,
                         header.point_format),
             content.comments};
 }
 
 Format las_format() {
-    Format las{"LAS", {"las"}, recognise, [](const FileBytes& file, const ReadOptions& options) {
-                   return read_las(file, options);
-               }, {}};
+    Format las{"LAS",
+               {"las"},
+               recognise,
+               [](const FileBytes& file, const ReadOptions& options) { return read_las(file, options); },
+               {}};
     las.memory_per_byte = 5;
     las.may_stream = [](std::string_view file) { return may_be_las_stream(file, false); };
     las.open_stream = [](std::unique_ptr<MappedFile> file, const ReadOptions& options, unsigned threads,

@@ -13,15 +13,22 @@ public:
     PtxReader(std::string_view text, const ReadOptions& options) : text_(text), size_(text.size()), options_(options) {}
 
     LoadedFile read() {
-        for (; text_.next_row(); ++scans_) read_scan();
+        for (; text_.next_row(); ++scans_) {
+            if (options_.view == 0 || options_.view == scans_ + 1)
+                read_scan();
+            else
+                skip_scan();
+        }
         if (scans_ == 0) throw Error("holds no points: only blanks");
+        if (options_.view > scans_)
+            throw Error("has no scan {}; it has {}", options_.view, count_text(scans_, "scan", "scans"));
         if (positions_.empty())
             throw Error("holds no points: {} without a return", count_text(empty_, "cell", "cells"));
         require_countable(positions_.size(), "points");
         if (empty_ > 0)
             warn(options_.on_warning, "{} of {} cells without a return (0 0 0) left out", empty_,
                  empty_ + positions_.size());
-        if (scans_ > 1)
+        if (has_several())
             warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' has their numbers", scans_);
         warn(options_.on_warning,
              "the order of the cells in columns and rows was left out; the column 'approach' has the directions to the "
@@ -33,7 +40,15 @@ public:
         return loaded;
     }
 
+    /// The number of scans. Reads the numbers of columns and rows, and counts lines.
+    u32 count() {
+        for (; text_.next_row(); ++scans_) skip_scan();
+        return static_cast<u32>(scans_);
+    }
+
 private:
+    bool has_several() const { return scans_ > 1 && options_.view == 0; }
+
     /// Reads a row of `size` numbers. `what` names the row in messages. Pre: the cursor is in the row.
     template <int size>
     Eigen::RowVector<double, size> read_numbers(std::string_view what) {
@@ -53,19 +68,32 @@ private:
         return count;
     }
 
-    void read_scan() {
-        u64 lines = 1;
-        const std::string header = fmt::format("lines of the header of scan {}", scans_);
-        const auto next_header_line = [&] { require_row(text_, lines++, 10, header); };
+    /// The numbers of columns and rows of a scan. Pre: the cursor is in its first row.
+    std::pair<u64, u64> read_size() {
         const std::size_t first_line = text_.line();
         const u64 columns = read_count("columns");
-        next_header_line();
+        require_row(text_, 1, header_lines, fmt::format("lines of the header of scan {}", scans_));
         const u64 rows = read_count("rows");
         constexpr u64 least_cell = 8;  // "0 0 0 0" and a line end
         if (rows > 0 && columns > (size_ / least_cell + 1) / rows)
             throw Error("line {}: scan {} promises {} x {} cells; the file has only {}", first_line, scans_, columns,
                         rows, count_text(size_, "byte", "bytes"))
                 .hint(truncated_hint);
+        return {columns, rows};
+    }
+
+    void skip_scan() {
+        const auto [columns, rows] = read_size();
+        const u64 left = header_lines - 2 + columns * rows;
+        const std::string lines = fmt::format("lines of scan {}", scans_);
+        for (u64 line = 0; line < left; ++line) require_row(text_, line, left, lines);
+    }
+
+    void read_scan() {
+        const auto [columns, rows] = read_size();
+        u64 lines = 2;
+        const std::string header = fmt::format("lines of the header of scan {}", scans_);
+        const auto next_header_line = [&] { require_row(text_, lines++, header_lines, header); };
         for (const std::string_view what : {"position", "x axis", "y axis", "z axis"}) {
             next_header_line();
             read_numbers<3>(what);
@@ -160,13 +188,14 @@ private:
         values_.resize(kept);
         ColumnTable table = text_columns(std::move(names), std::move(values_), false, options_.on_warning);
         table.add(Column("approach", 3, Buffer<float>(std::move(approaches_))));
-        if (scans_ > 1) table.add(Column("scan", 1, Buffer(std::move(scan_of_))));
+        if (has_several()) table.add(Column("scan", 1, Buffer(std::move(scan_of_))));
         return table;
     }
 
+    static constexpr u64 header_lines = 10;
     TextCursor text_;
     std::size_t size_;
-    const ReadOptions& options_;
+    const ReadOptions options_;
     std::size_t scans_ = 0;
     u64 empty_ = 0;
     std::optional<bool> has_colours_;  // of this scan; empty before its first point
@@ -189,6 +218,10 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
 
 }  // namespace
 
-Format ptx_format() { return {"PTX", {"ptx"}, recognise, read, {}}; }
+Format ptx_format() {
+    Format format{"PTX", {"ptx"}, recognise, read, {}};
+    format.count_views = [](std::string_view text) { return PtxReader(without_byte_order_mark(text), {}).count(); };
+    return format;
+}
 
 }  // namespace scanmill

@@ -78,8 +78,7 @@ std::optional<Sides> best_sides(std::span<const Beside> beside, double tolerance
 bool continues(const DistinctPoints& points, const FixedEdges& fixed, u32 from, u32 to) {
     const Vec3 along = (points.positions[to] - points.positions[from]).normalized();
     return std::ranges::any_of(fixed.of(to), [&](u32 next) {
-        return next != from &&
-               (points.positions[next] - points.positions[to]).normalized().dot(along) > smooth_cosine;
+        return next != from && (points.positions[next] - points.positions[to]).normalized().dot(along) > smooth_cosine;
     });
 }
 
@@ -87,7 +86,8 @@ bool continues(const DistinctPoints& points, const FixedEdges& fixed, u32 from, 
 
 EdgeSides::EdgeSides(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, const FixedEdges& fixed,
                      std::span<const std::array<u32, 2>> edges, std::span<const double> spacings)
-    : begin_(points.size() + 1, 0), normals_(points.size()) {
+    : begin_(points.size() + 1, 0),
+      normals_(points.size()) {
     std::ranges::fill(normals_, Vec3::Zero());
     std::vector<double> nearest(points.size(), infinity);
     std::vector<std::pair<u32, Label>> found;

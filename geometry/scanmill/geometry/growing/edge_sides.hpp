@@ -7,8 +7,8 @@
 /// need no normals, which mix the two sides at narrow edges.
 ///
 /// An edge of a surface between two points on different sides of a fixed edge would cross the fixed edge or leave the
-/// surface. The rule holds for any angle between the sides. It needs lines that are where the surface bends: beside lines
-/// farther than a third of the spacing from it, points may be on the wrong side.
+/// surface. The rule holds for any angle between the sides. It needs lines that are where the surface bends: beside
+/// lines farther than a third of the spacing from it, points may be on the wrong side.
 
 #include <span>
 #include <vector>

@@ -366,8 +366,7 @@ Creases find_creases(const TriangleMesh& mesh, std::span<const u32> opposite, co
     if (result.reach > 0) {
         lines.extend(result.normals, weaker_share * params.sharp_angle + angle_tie, result.reach / 2);
         lines.bridge(result.reach / 2);
-        lines.drop_isolated(result.reach,
-                            params.exact_declared ? mesh.sharp_edges.span() : std::span<const Edge>());
+        lines.drop_isolated(result.reach, params.exact_declared ? mesh.sharp_edges.span() : std::span<const Edge>());
     }
     if (params.least_size > 0) lines.remove_smaller(params.least_size);
     return result;

@@ -24,7 +24,7 @@ struct LasFacts {
     LasGrid low = LasGrid::Constant(std::numeric_limits<std::int32_t>::max());
     LasGrid high = LasGrid::Constant(std::numeric_limits<std::int32_t>::min());
     std::array<u8, 2> flag_bits{};  ///< bits of bytes 14 and 15 that any point has
-    u32 colour_bits = 0;            ///< bits that any of the colours has
+    u32 colour_bits = 0;  ///< bits that any of the colours has
     bool colours_are_multiples = true;  ///< whether all colours are bytes times 257
 
     void add(const LasHeader& header, std::string_view records);
