@@ -62,8 +62,8 @@ scanmill: 1
 name: look
 inputs: {before: mesh, after: mesh, plan: probes}
 parameters:
-  eye: {default: [450 mm, 240 mm, 135 mm], help: Of the close-ups.}
-  at: {default: [402 mm, 296 mm, 82 mm], help: Their middle.}
+  eye: {default: [450 mm, 240 mm, 135 mm], help: The eye of the close-ups.}
+  at: {default: [402 mm, 296 mm, 82 mm], help: The point in their middle.}
 steps:
   - id: planned
     render: {size: [480, 360]}

@@ -3,7 +3,7 @@
 # Fetches the sources of two libraries that Debian 12 does not have into build/sources and checks their SHA-256. They come
 # inside packages of PyPI and must not be committed. Existing sources are not fetched again.
 #
-#   build/sources/laszip   LASzip, which reads and writes LAZ (LGPL-2.1)
+#   build/sources/laszip   LASzip, which reads and writes LAZ (Apache-2.0)
 #   build/sources/pye57    libE57Format, which reads E57 (BSL-1.0)
 set -euo pipefail
 

@@ -83,7 +83,7 @@ def seconds(program):
 
 
 def contacts(program, vertices, faces):
-    """Of every touch: whether the ball met the mesh, and its centre then. It moves from its start towards the touched point,
+    """Whether the ball met the mesh, and its centre then, for every touch. It moves from its start towards the touched point,
     at most by the radius and half of the search distance farther."""
     scene = open3d.t.geometry.RaycastingScene()
     scene.add_triangles(open3d.core.Tensor(vertices.astype("f4")), open3d.core.Tensor(faces.astype("u4")))

@@ -3,7 +3,7 @@
 from tables import page
 
 OURS = ("quickstart", "raw-scans")
-#: Of open models only.
+#: Only for open models.
 KEEP = "raw-scans, outer: keep"
 NOTES = """\
 Every model is scanned by `virtual-scan` from 20 views with rays 0.5 % of the diagonal apart, without noise and with

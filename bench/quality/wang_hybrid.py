@@ -5,8 +5,7 @@
 Every part goes the whole way: a virtual scan with noise and outliers, wang-2006-hybrid.yaml up to the DMIS program, a
 simulated machine that runs this program on the true part and writes its results as DMIS (dmis_machine.py), and
 scan-and-touches.yaml. Writes wang-hybrid.md and .json. The exit code is 1 if a program fails, or if less than LEAST_SHARE of an
-exact part's planned edges is within the probe's error.
-Models that are not there are skipped.
+exact part's planned edges is within the probe's error. Models that `make data` has not fetched are skipped.
 """
 import json
 import pathlib
@@ -118,6 +117,8 @@ def planned_edges(plan, spacing):
             points.append(places[a] * (1 - shares) + places[b] * shares)
             lengths.append(numpy.full(count, length / count))
             paired.append(numpy.full(count, directions[a] == directions[b] == 2))
+    if not points:
+        raise scanmill.Broken("the machine makes no two neighbouring touches")
     return Planned(numpy.concatenate(points), numpy.concatenate(lengths), numpy.concatenate(paired))
 
 
@@ -259,7 +260,7 @@ def main():
     print("\n".join(lines))
     page.write(options.into, "wang-hybrid", results, lines)
     failed = [f"{case['part']}: {case['failure']}" for case in cases if case["failure"]]
-    failed += [f"{case['part']}: {100 * case['hybrid']['edge']['within']:.1f} % of the paired length is within the probe's error"
+    failed += [f"{case['part']}: {100 * (case['hybrid']['edge']['within'] or 0):.1f} % of the paired length is within the probe's error"
                for case in cases if not case["failure"] and case["part"] in EXACT
                and (case["hybrid"]["edge"]["within"] or 0) < LEAST_SHARE]
     for each in failed:

@@ -10,8 +10,8 @@ class Broken(Exception):
 
 def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None, settings=None, until=None, unit=None):
     """The report of `scanmill run --json` without a cache. `inputs` are files and `settings` parameter values, by name.
-    The run ends after the step `until`. Files without a unit have the unit `unit`. The report includes failed scans. Raises Broken without a report: bad
-    arguments, a fault of the program, or no end within `limit` seconds."""
+    The run ends after the step `until`. Files without a unit have the unit `unit`. The report includes failed scans.
+    Raises Broken without a report: bad arguments, a fault of the program, or no end within `limit` seconds."""
     command = [program, "run", workflow, *scans, "-o", folder, "--threads", threads, "--jobs", jobs]
     command += ["--no-cache", "--quiet", "--json"]
     if until:

@@ -45,7 +45,10 @@ ChunkDecoder::ChunkDecoder(const LasParts& parts, const LASzip& laszip, const Ch
     : header_(parts.header),
       laszip_(laszip),
       chunk_(chunk) {
-    if (has_layers(laszip)) require_layers();
+    if (has_layers(laszip))
+        require_layers();
+    else
+        require_code(chunk.bytes.substr(std::min(header_.point_size, chunk.bytes.size())));
     // LASreadPoint first reads the 8 bytes that precede the chunks, unless all points are one run. A stream that cannot
     // go back makes it ignore them, so that any bytes do.
     const std::size_t ignored = is_one_run(laszip) ? 0 : address_size;
@@ -82,10 +85,21 @@ void ChunkDecoder::require_layers() const {
     if (const u32 count = little_endian<u32>(at); count < chunk_.points)
         throw_damaged(fmt::format("it declares {} instead of {}", count_text(count, "point", "points"), chunk_.points));
     u64 sum = head;
-    for (std::size_t i = 0; i < layers; ++i) sum += little_endian<u32>(at + count_size + i * layer_size);
+    for (std::size_t i = 0; i < layers; ++i) {
+        const u64 size = little_endian<u32>(at + count_size + i * layer_size);
+        if (size > chunk_.bytes.size() - sum)
+            throw_damaged(fmt::format("layer {} has {} at byte {}, but the chunk has {}", i + 1,
+                                      count_text(size, "byte", "bytes"), sum, chunk_.bytes.size()));
+        require_code(chunk_.bytes.substr(sum, size));
+        sum += size;
+    }
     if (sum != chunk_.bytes.size())
         throw_damaged(
             fmt::format("its layers take {}, but it has {}", count_text(sum, "byte", "bytes"), chunk_.bytes.size()));
+}
+
+void ChunkDecoder::require_code(std::string_view code) const {
+    if (is_impossible(code)) throw_damaged("its code begins with a number that no encoder writes");
 }
 
 void ChunkDecoder::throw_damaged(const std::string& what) const {

@@ -13,8 +13,8 @@ namespace scanmill::laz {
 
 class ChunkDecoder {
 public:
-    /// Throws Error if the sizes of the chunk's layers exceed the chunk. Pre: `laszip` is from read_laszip_record() for
-    /// this header; `parts` and `laszip` outlive the object.
+    /// Throws Error if the sizes of the chunk's layers contradict the chunk. Pre: `laszip` is from read_laszip_record()
+    /// for this header; `parts` and `laszip` outlive the object.
     ChunkDecoder(const LasParts& parts, const LASzip& laszip, const Chunk& chunk);
 
     /// Restores the next points into records of the header's point size. Throws Error if the chunk is damaged.
@@ -33,6 +33,7 @@ private:
     };
 
     void require_layers() const;
+    void require_code(std::string_view code) const;
     [[noreturn]] void throw_damaged(const std::string& what) const;
 
     const LasHeader& header_;

@@ -53,6 +53,7 @@ std::vector<Entry> read_entries(const LasParts& parts, const LASzip& laszip, u64
     if (count == 0) return entries;
     const std::string_view coded = parts.bytes.substr(address + table_head);
     try {
+        if (is_impossible(coded)) throw EOF;
         ByteStreamInArrayLE stream(reinterpret_cast<const U8*>(coded.data()), static_cast<I64>(coded.size()));
         ArithmeticDecoder decoder;
         decoder.init(&stream);

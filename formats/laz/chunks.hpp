@@ -11,6 +11,10 @@ namespace scanmill::laz {
 /// The bytes before the first chunk, which contain the address of the table of chunks.
 constexpr std::size_t address_size = 8;
 
+/// Whether an arithmetic code begins with the one number of 32 bits that no encoder writes. It would lead LASzip's
+/// decoder beyond its tables; all other codes keep it within them.
+inline bool is_impossible(std::string_view code) { return code.starts_with("\xff\xff\xff\xff"); }
+
 struct Chunk {
     std::string_view bytes;
     u64 points = 0;

@@ -30,6 +30,7 @@ void decompress_serially(const LasParts& parts, const LASzip& laszip, const std:
             read += points;
         }
         decoder.require_end();
+        if (parts.release) parts.release(chunk.bytes);
     }
 }
 
@@ -46,6 +47,7 @@ void decompress(const LasParts& parts, unsigned threads, const Put& put) {
             ChunkDecoder decoder(parts, *laszip, chunks[i]);
             decoder.read(records);
             decoder.require_end();
+            if (parts.release) parts.release(chunks[i].bytes);
         },
         [&](std::size_t, const Array<char>& records) {
             put({records.data(), records.size()});

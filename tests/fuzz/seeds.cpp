@@ -6,6 +6,9 @@
 #include <cstring>
 
 #include "core/formats/las/las_support.hpp"
+#ifdef SCANMILL_LAZ
+#include "formats/laz/laz_support.hpp"
+#endif
 #include "scanmill/io/output_buffer.hpp"
 #include "support/gzip.hpp"
 
@@ -115,11 +118,27 @@ std::string las(u32 minor_version, u32 point_format, std::size_t point_size) {
     return file.file();
 }
 
+void add_laz(std::vector<Seed>& seeds) {
+#ifdef SCANMILL_LAZ
+    constexpr std::size_t points = 5, extra = 2;
+    for (const u32 format : {1u, 3u, 5u, 7u, 10u})
+        seeds.push_back({"laz", "format_" + std::to_string(format) + ".laz",
+                         laz_file(noisy_points(format, points, extra), {.chunk_size = 2})});
+    const LasBytes old = noisy_points(3, points);
+    seeds.push_back({"laz", "one_run.laz", laz_file(old, {.method = LASZIP_COMPRESSOR_POINTWISE, .version = 1})});
+    seeds.push_back({"laz", "chunks_differ.laz", laz_file(noisy_points(6, points), {.chunks = {1, 3, 1}})});
+    const std::string bytes = laz_file(old);
+    seeds.push_back({"laz", "table_cut_short.laz", bytes.substr(0, bytes.size() - 3)});
+#else
+    (void)seeds;
+#endif
+}
+
 }  // namespace
 
 std::vector<Seed> binary_seeds() {
     const std::string points = ply_points(std::endian::little);
-    return {
+    std::vector<Seed> seeds{
         {"ply", "points_little_endian.ply", points},
         {"ply", "points_big_endian.ply", ply_points(std::endian::big)},
         {"ply", "stream_little_endian.ply", ply_stream(std::endian::little)},
@@ -143,6 +162,8 @@ std::vector<Seed> binary_seeds() {
         {"las", "waves.las", las(4, 10, 67)},
         {"las", "compressed.las", las(2, 128, 20)},
     };
+    add_laz(seeds);
+    return seeds;
 }
 
 }  // namespace scanmill::test

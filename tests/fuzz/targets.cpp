@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 20> table{{
+    static constexpr auto table = std::to_array<FuzzTarget>({
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -17,6 +17,9 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"obj", [](std::string_view bytes) { return read_scan("obj", bytes); }},
         {"ptx", [](std::string_view bytes) { return read_scan("ptx", bytes); }},
         {"las", [](std::string_view bytes) { return read_scan("las", bytes); }},
+#ifdef SCANMILL_LAZ
+        {"laz", [](std::string_view bytes) { return read_scan("laz", bytes); }},
+#endif
         {"dmi", [](std::string_view bytes) { return read_scan("dmi", bytes); }},
         {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
         {"png", [](std::string_view bytes) { return read_scan("png", bytes); }},
@@ -28,7 +31,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"format-manifest", check_format_manifest},
         {"poses", check_poses},
         {"document", check_document},
-    }};
+    });
     return table;
 }
 

@@ -102,7 +102,7 @@ void require_memory_to_read(const std::filesystem::path& path, u64 available) {
                 byte_size_text(available))
         .hint(
             "thin or split it first, use a machine with more memory, or store points as binary PLY with vertices "
-            "only, which is read piece by piece where the workflow allows it");
+            "only, LAS or LAZ, which are read piece by piece where the workflow allows it");
 }
 
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options) {

@@ -53,11 +53,12 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
 /// threads, to find bounds and origin. Then reads the pieces that robust_box() needs, up to twice. `on_positions`,
 /// unless empty, receives every piece of the first pass, in order and on this thread, even if the result is null.
 ///
-/// Returns null if the format cannot be streamed, if a coordinate is not finite, or if read_points() would warn about
-/// the content or refuse the file. The caller then uses read_points(). Warnings about units and frames go to
-/// options.on_warning. The file must not change while the stream exists; read() throws if it detects a change.
-/// Cost: the time to read a binary file; for a text, also the time to parse its numbers. Memory: per thread, the
-/// positions of four pieces (at most 1.5 MB each) and the bytes of one piece; 8 bytes per piece (24 more in texts).
+/// Returns null if the format cannot be streamed, if a coordinate is not finite, or if read_points() would refuse the
+/// file or give warnings about the content that the stream cannot give. The caller then uses read_points(). Other
+/// warnings go to options.on_warning. The file must not change while the stream exists; read() throws if it detects a
+/// change. Cost: the time to read a binary file; for a text, also the time to parse its numbers. Memory: per thread,
+/// the positions of four pieces (at most 1.5 MB each) and the bytes of one piece; 8 bytes per piece (24 more in texts).
+/// LAZ files take a temporary file of the uncompressed size and up to 32 MB per thread while they are decompressed.
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
                                                unsigned threads, const OnWorldPositions& on_positions = {});
 

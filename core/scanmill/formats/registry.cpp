@@ -99,7 +99,10 @@ std::span<const Format> formats() {
         for (const auto& format : {probes_csv_format, ptx_format, las_format, dmis_format, json_format})
             rows.push_back(format());
         std::ranges::move(module_formats(), std::back_inserter(rows));
-        if (std::ranges::find(rows, "E57", &Format::name) == rows.end()) rows.push_back(e57_format());
+        // Formats that only a module reads are refused by name where the module is not built.
+        for (const auto& format : {refused_laz_format, e57_format})
+            if (Format row = format(); std::ranges::find(rows, row.name, &Format::name) == rows.end())
+                rows.push_back(std::move(row));
         return rows;
     }();
     return table;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -13,9 +14,9 @@ namespace scanmill {
 namespace {
 
 [[noreturn]] void throw_failed(const char* action, int reason) {
-    std::error_code unusable;
-    throw Error("a temporary file cannot be {} in '{}': {}", action,
-                std::filesystem::temp_directory_path(unusable).string(), std::generic_category().message(reason))
+    const char* const folder = std::getenv("TMPDIR");
+    throw Error("a temporary file cannot be {} in '{}': {}", action, folder ? folder : "/tmp",
+                std::generic_category().message(reason))
         .hint("set TMPDIR to a folder with more free space");
 }
 

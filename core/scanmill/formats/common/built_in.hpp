@@ -121,10 +121,13 @@ Format ptx_format();
 /// described names and types, or float64 if they have a scale or an offset. The unit is metre or foot if the GeoTIFF
 /// keys declare it.
 ///
-/// Left out: variable length records, wave packets, undescribed extra bytes, bytes after the last point. LAZ, the
-/// compressed form, and COPC are recognised and refused, with a hint how to convert them.
+/// Left out: variable length records, wave packets, undescribed extra bytes, bytes after the last point.
+/// Streamed: every file whose coordinates are finite. The module LAZ reads the compressed forms, LAZ and COPC, to the
+/// same columns.
 /// Source: ASPRS, LAS specification 1.4 revision 15; its earlier versions 1.0 to 1.3.
 Format las_format();
+/// LAZ and COPC where the module LAZ is not built: recognised and refused, with a hint how to convert them.
+Format refused_laz_format();
 
 /// DMIS, the language of coordinate measuring machines (ISO 22093), the part of version 5.2 that touches need. A plan
 /// is written as a program; the results of a machine are read as points. The syntax is known from public programs, not

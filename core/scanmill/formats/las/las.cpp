@@ -58,8 +58,16 @@ PointCloud cloud_of(const LasContent& content, const Pieces& pieces, const ReadO
         las_positions(header, Vec3::Zero(), pieces[piece], buffer);
         return buffer;
     };
-    cloud.frame.origin =
-        distant_origin(robust_box({pieces.begin(), read_world}, facts.box(header, Vec3::Zero())).robust);
+    BoundingBox box = facts.box(header, Vec3::Zero());
+    if (!box.low.allFinite() || !box.high.allFinite()) {
+        // A huge scale makes some coordinates infinite; the box is that of the others.
+        box = {};
+        Array<Vec3> buffer;
+        for (std::size_t i = 0; i < pieces.size(); ++i)
+            if (const BoundingBox part = bounding_box(read_world(i, buffer)); !part.empty())
+                for (const Vec3& corner : {part.low, part.high}) box.add(corner);
+    }
+    cloud.frame.origin = distant_origin(robust_box({pieces.begin(), read_world}, box).robust);
 
     Array<Vec3> positions(pieces.rows());
     LasTable table(columns, pieces.rows());
@@ -73,10 +81,8 @@ PointCloud cloud_of(const LasContent& content, const Pieces& pieces, const ReadO
     return cloud;
 }
 
-/// Compressed points are only plausible, so that the module that reads them has precedence.
-Recognition recognise(std::string_view head, u64) {
-    if (!head.starts_with(las_magic)) return Recognition::no;
-    return is_marked_compressed(head) ? Recognition::plausible : Recognition::certain;
+bool is_las(std::string_view head, bool compressed) {
+    return head.starts_with(las_magic) && is_marked_compressed(head) == compressed;
 }
 
 }  // namespace
@@ -97,11 +103,11 @@ LoadedFile read_las(const FileBytes& file, const ReadOptions& options, const Laz
 }
 
 Format las_format() {
-    Format las{"LAS",
-               {"las"},
-               recognise,
-               [](const FileBytes& file, const ReadOptions& options) { return read_las(file, options); },
-               {}};
+    const auto recognise = [](std::string_view head, u64) {
+        return is_las(head, false) ? Recognition::certain : Recognition::no;
+    };
+    const auto read = [](const FileBytes& file, const ReadOptions& options) { return read_las(file, options); };
+    Format las{"LAS", {"las"}, recognise, read, {}};
     las.memory_per_byte = 5;
     las.may_stream = [](std::string_view file) { return may_be_las_stream(file, false); };
     las.open_stream = [](std::unique_ptr<MappedFile> file, const ReadOptions& options, unsigned threads,
@@ -109,6 +115,14 @@ Format las_format() {
         return open_las_stream(std::move(file), options, threads, on_positions);
     };
     return las;
+}
+
+Format refused_laz_format() {
+    const auto recognise = [](std::string_view head, u64) {
+        return is_las(head, true) ? Recognition::certain : Recognition::no;
+    };
+    const auto refuse = [](const FileBytes& file, const ReadOptions& options) { return read_las(file, options); };
+    return {"LAZ", {"laz"}, recognise, refuse, {}, true};
 }
 
 }  // namespace scanmill

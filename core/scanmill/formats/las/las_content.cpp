@@ -54,7 +54,7 @@ LasContent read_las_content(const FileBytes& file, const ReadOptions& options, b
         throw Error("is not a {} file: it begins with {}, not with {}", reads_compressed ? "LAZ" : "LAS",
                     quote(file.bytes.substr(0, las_magic.size())), las_magic);
     LasContent content;
-    content.parts = {read_las_header(file.bytes), {}, file.bytes};
+    content.parts = {read_las_header(file.bytes), {}, file.bytes, {}};
     LasParts& parts = content.parts;
     parts.records = read_las_records(parts.header, file.bytes, options);
     content.is_copc = std::ranges::any_of(parts.records, is_of_copc);

@@ -12,6 +12,8 @@ struct LasParts {
     LasHeader header;
     std::vector<LasRecord> records;
     std::string_view bytes;  ///< the whole file
+    /// Called with bytes that are not needed again, from any thread: frees their pages. May be empty.
+    std::function<void(std::string_view part)> release = {};
 };
 
 /// Restores all points of a compressed file, in order, as the records that an uncompressed file of the same point

@@ -59,6 +59,7 @@ private:
     void restore(LasFacts& facts, unsigned threads, const OnWorldPositions& on_positions,
                  const LasDecompress& decompress) {
         UnnamedFile restored;
+        content_.parts.release = [this](std::string_view part) { file_->release(part); };
         Array<Vec3> positions;
         decompress(content_.parts, threads, [&](std::string_view records) {
             restored.append(records);
@@ -68,6 +69,7 @@ private:
             las_positions(header_, Vec3::Zero(), records, positions);
             on_positions(positions);
         });
+        content_.parts.release = {};
         content_.parts.records.clear();  // they view the compressed file
         file_ = restored.map();
         content_.parts.bytes = records_ = file_->bytes();
@@ -185,7 +187,7 @@ private:
 
 bool may_be_las_stream(std::string_view file, bool reads_compressed) {
     if (!file.starts_with(las_magic)) return false;
-    LasParts parts{read_las_header(file), {}, file};
+    LasParts parts{read_las_header(file), {}, file, {}};
     parts.records = read_las_records(parts.header, file, {});
     if (is_compressed(parts) != reads_compressed) return false;
     require_las_points(parts.header, file);

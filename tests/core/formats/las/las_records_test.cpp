@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything in a LAS file except its points: wrong sizes, records, extra bytes, units, compression; E57.
 #include "las_support.hpp"
+#include "scanmill/formats/common/built_in.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -185,19 +186,38 @@ std::string hint_for(std::string_view bytes, const char* name) {
     return "it was read";
 }
 
-TEST(CompressedLas, IsRefusedWithACommand) {
+/// The refusal where no module reads LAZ.
+Error laz_error(const LasBytes& las, const char* name) {
+    try {
+        refused_laz_format().read({name, las.file()}, {});
+    } catch (const Error& error) {
+        return error;
+    }
+    return Error("it was read");
+}
+
+TEST(CompressedLas, WithoutAModule_IsRefusedWithACommand) {
     LasBytes las = plain();
-    las.point_format = 0x80 | 3;
-    EXPECT_THAT(refusal_of(las.file(), "a.laz"), HasSubstr("is a LAZ file, LAS in compressed form"));
-    EXPECT_THAT(hint_for(las.file(), "a.laz"), HasSubstr(": laszip -i a.laz -o out.las"));
-    // By its content, whatever it is called.
-    EXPECT_THAT(hint_for(las.file(), "a.xyz"), HasSubstr(": pdal translate a.xyz out.las,"));
-    EXPECT_THAT(hint_for(las.file(), "my scan's.laz"), HasSubstr(": pdal translate 'my scan'\\''s.laz' out.las,"));
+    las.point_format = 0x80 | 0;
+    EXPECT_THAT(laz_error(las, "a.laz").sentence(), HasSubstr("is a LAZ file, LAS in compressed form"));
+    EXPECT_THAT(laz_error(las, "a.laz").hint(), HasSubstr(": laszip -i a.laz -o out.las"));
+    EXPECT_THAT(laz_error(las, "my scan's.laz").hint(), HasSubstr(": pdal translate 'my scan'\\''s.laz' out.las,"));
     las.add_record("copc", 1, "");
-    EXPECT_THAT(refusal_of(las.file(), "a.laz"), HasSubstr("is a COPC file"));
+    EXPECT_THAT(laz_error(las, "a.laz").sentence(), HasSubstr("is a COPC file"));
     LasBytes by_record = plain();
     by_record.add_record("laszip encoded", 22204, "");
     EXPECT_THAT(refusal_of(by_record.file(), "a.las"), HasSubstr("is a LAZ file"));
+}
+
+TEST(CompressedLas, IsRecognisedByItsHeader) {
+    LasBytes las = plain();
+    const std::string uncompressed = las.file();
+    las.point_format = 0x80 | 0;
+    const std::string compressed = las.file();
+    EXPECT_EQ(las_format().recognises(uncompressed, uncompressed.size()), Recognition::certain);
+    EXPECT_EQ(las_format().recognises(compressed, compressed.size()), Recognition::no);
+    EXPECT_EQ(refused_laz_format().recognises(uncompressed, uncompressed.size()), Recognition::no);
+    EXPECT_EQ(refused_laz_format().recognises(compressed, compressed.size()), Recognition::certain);
 }
 
 TEST(E57, WithoutItsModule_IsRefusedWithACommand) {

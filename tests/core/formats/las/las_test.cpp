@@ -183,5 +183,16 @@ TEST(LasReader_DamagedBytes, AreReadOrRefused_NeverMore) {
     }
 }
 
+TEST(LasScale, TooLargeForADouble_GivesInfinitePositions) {
+    LasBytes las;
+    las.scale = {1e308, 1e308, 1e308};
+    for (int i = 1; i < 4; ++i) las.points.push_back(las_point(20, 1000 * i, 1000, -1000));
+    const auto cloud = points_in(las.file(), "a.las");
+    EXPECT_EQ(cloud->size(), 3u);
+    EXPECT_FALSE(cloud->positions[0].allFinite());
+    las.points.push_back(las_point(20, 0, 0, 0));
+    EXPECT_EQ(points_in(las.file(), "a.las")->positions[3], Vec3(0, 0, 0));
+}
+
 }  // namespace
 }  // namespace scanmill::test
