@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fill_holes/fill_holes.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "fill_holes/filled_mesh.hpp"
 #include "fill_holes/fillings.hpp"
 #include "fill_holes/mesh_loops.hpp"
+#include "fill_holes/outer_boundaries.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
@@ -51,33 +50,6 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
                     count_text(repeats, "triangle has", "triangles have"), first, mesh.triangles[first][0],
                     mesh.triangles[first][1], mesh.triangles[first][2])
             .hint("repair drops such triangles");
-}
-
-/// For each loop, its flat area as a share of the area of the mesh.
-std::vector<double> shares_of(const TriangleMesh& mesh, const MeshLoops& boundary) {
-    double area = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        area += (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm() / 2;
-    std::vector<double> shares;
-    for (const std::vector<u32>& loop : boundary.loops()) {
-        const Vec3 origin = mesh.positions[boundary.start(loop.front())];
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            sum += (mesh.positions[boundary.start(loop[i])] - origin)
-                       .cross(mesh.positions[boundary.start(loop[(i + 1) % loop.size()])] - origin);
-        shares.push_back(area > 0 ? sum.norm() / 2 / area : 0);
-    }
-    return shares;
-}
-
-/// The least share of an outer boundary; infinite if none is one.
-double least_outer_share(const FillHolesParams& params, std::span<const double> shares) {
-    using Outer = FillHolesParams::Outer;
-    if (params.must_close || params.outer == Outer::fill) return std::numeric_limits<double>::infinity();
-    const bool is_open =
-        std::ranges::any_of(shares, [](double share) { return share >= FillHolesParams::outer_share; });
-    return params.outer == Outer::keep || is_open ? FillHolesParams::large_share
-                                                  : std::numeric_limits<double>::infinity();
 }
 
 /// Triangulates the loops. No triangulation intersects anything; a hole without a triangulation is open.
@@ -153,14 +125,11 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     const FillingStage first_stage = params.fair ? FillingStage::faired : FillingStage::refined;
     FillHolesResult result;
     std::vector<Hole> holes;
-    const std::vector<double> shares = shares_of(mesh, boundary);
-    const double least_outer = least_outer_share(params, shares);
-    double kept_share = 0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
+    const OuterBoundaries outer = outer_boundaries(mesh, boundary, params);
+    for (std::size_t i = 0; i < outer.is_outer.size(); ++i) {
         const std::vector<u32>& loop = boundary.loops()[i];
-        if (shares[i] >= least_outer) {
+        if (outer.is_outer[i]) {
             ++result.outer;
-            kept_share += shares[i];
             continue;
         }
         const bool fits = (!params.max_edges || loop.size() <= *params.max_edges) &&
@@ -188,7 +157,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
         context.warn(fmt::format(
             "the surface stays open at {}: closed flat, {} would add {:.0f} % to its area; `outer: fill` closes all",
             count_text(result.outer, "outer boundary", "outer boundaries"), by_count(result.outer, "it", "they"),
-            100 * kept_share));
+            100 * outer.share));
 
     const double diagonal = surface_box(mesh).diagonal();
     std::size_t too_long = 0;
@@ -215,6 +184,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     context.metric("filled", static_cast<double>(result.filled));
     context.metric("left", static_cast<double>(result.beyond_limits + result.failed + result.outer));
     context.metric("outer", static_cast<double>(result.outer));
+    context.metric("largest-share", outer.largest_share, Unit::ratio);
     context.metric("added-triangles", static_cast<double>(added_triangles));
     context.metric("added-points", static_cast<double>(added_points));
     context.metric("area", result.area, Unit::area);

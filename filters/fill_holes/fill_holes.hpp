@@ -15,10 +15,11 @@
 namespace scanmill {
 
 struct FillHolesParams {
-    /// Which loops are outer boundaries and stay open. The share of a loop is its flat area, the length of half the sum
-    /// of p x q over its edges, of the area of the mesh: that part of the surface would be new if the loop were closed
-    /// flat. Outer::keep: loops with a share of `large_share` or more. Outer::automatic: of `outer_share` or more, and
-    /// all loops of `large_share` or more if there is one. Outer::fill: none.
+    /// The loops that are outer boundaries, which stay open. A loop closed flat adds its flat area to the surface: half
+    /// the length of the sum of p x q over its edges pq. Its share is this area divided by the area of the mesh.
+    /// - Outer::keep: all loops with a share of at least `large_share`.
+    /// - Outer::automatic: the same, if one loop has a share of at least `outer_share`; otherwise none.
+    /// - Outer::fill: none.
     enum class Outer { automatic, keep, fill };
     static constexpr double outer_share = 0.4, large_share = 0.02;
     Outer outer = Outer::automatic;
@@ -59,8 +60,8 @@ struct FillHolesResult {
 /// Fills every boundary loop within the limits that is no outer boundary.
 ///
 /// Outer boundaries. A flat sheet has a share of 1, a hemisphere of 1/2, a cube without its base of 1/5, and face masks
-/// of 0.55 to 0.8. The unseen base of a standing figure and the cut through a neck have 0.1 to 0.2: they are not told
-/// apart, and Outer::automatic closes both. Outer::keep leaves both open, and fills what a scanner missed, below 0.02.
+/// of 0.55 to 0.8. The unseen base of a standing figure and the cut through a neck have 0.1 to 0.2: they cannot be told
+/// apart, and Outer::automatic closes both. Outer::keep leaves both open. Holes that a scanner left are far below 0.02.
 ///
 /// Loops. The boundary continues in the same fan of triangles. At a vertex with several fans it continues in the next
 /// one, in order of their half-edges. Where the boundary comes back to a vertex, the part between is a loop of its own.
@@ -108,7 +109,7 @@ struct FillHolesResult {
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles, about 1 µs for each if there
 /// is a loop. Triangulating n vertices takes about n² time. Closing together takes O(n log n) time and about 2 kB per
 /// vertex, for all vertices.
-/// Metrics: `filled`, `left`, `outer`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`,
+/// Metrics: `filled`, `left`, `outer`, `largest-share`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`,
 /// `together`, `replaced-triangles`, `failed`.
 FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
+
+#include <fmt/format.h>
+
 #include "fill_holes/fill_holes.hpp"
 
 using namespace scanmill;
@@ -23,9 +26,11 @@ SCANMILL_FILTER() {
                            "the values of the boundary beside them.")
         .choice("outer", &P::outer,
                 {{"auto", P::Outer::automatic,
-                  "Surfaces stay open if closing one loop flat would add 40 % to their area, as masks, terrain and "
-                  "plates; then all loops of 2 % or more stay open. Else every loop is filled."},
-                 {"keep", P::Outer::keep, "Loops that would add 2 % or more stay open."},
+                  fmt::format("A surface with a loop that would add {0:g} % to its area if it were closed flat is open, as "
+                              "masks, terrain and plates. Then all loops of {1:g} % or more stay open, otherwise none.",
+                              100 * P::outer_share, 100 * P::large_share)},
+                 {"keep", P::Outer::keep,
+                  fmt::format("Loops that would add {:g} % or more to the mesh stay open.", 100 * P::large_share)},
                  {"fill", P::Outer::fill, "Every loop is filled."}},
                 "The loops that are outer boundaries and stay open.")
         .choice("closed", &P::must_close,
@@ -42,11 +47,14 @@ SCANMILL_FILTER() {
         .param(
             "together", &P::together,
             "If loops stay open because every triangulation would intersect something, closes the whole surface as the "
-            "boundary of a solid. This replaces some of its triangles. It is not done if a limit leaves loops open.")
+            "boundary of a solid. This replaces some of its triangles. It is not done if a limit or an outer boundary "
+            "leaves loops open.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
         .metric("left", Unit::count,
                 "Loops that stay open: outer boundaries, beyond a limit, or without valid triangles.", headline)
         .metric("outer", Unit::count, "Outer boundaries that stay open.")
+        .metric("largest-share", Unit::ratio,
+                "Largest flat area of a loop, as a share of the area of the mesh; see `outer`.")
         .metric("added-triangles", Unit::count, "New triangles.")
         .metric("added-points", Unit::count, "New vertices.")
         .metric("area", Unit::area, "Area of the new triangles.")

@@ -12,20 +12,21 @@ namespace scanmill::compensating {
 namespace {
 
 constexpr double sqrt_half = std::numbers::sqrt2 / 2;
-/// Of the distances between three points of one circle.
-constexpr double most_ratio = 4;
-constexpr double most_parts = 64;
+constexpr double most_ratio = 4;  ///< of the distances between three points of one circle
+constexpr double most_parts = 64;  ///< of one chord
 
 /// A circle through two points a and b, as the height of its arc over their chord.
 struct ArcOverChord {
     Vec3 up;  ///< unit vector, perpendicular to the chord
     double curvature;  ///< 1 / radius
 
-    /// The height of the arc at a distance from a: that of a circle through a and b.
+    /// The height of the arc at a distance from a.
     double height(double from_a, double chord) const {
-        const double radius = 1 / curvature, half = chord / 2, aside = from_a - half;
-        const double depth = std::sqrt(std::max(0.0, radius * radius - half * half));
-        return std::sqrt(std::max(0.0, radius * radius - aside * aside)) - depth;
+        const auto depth = [&](double aside) {
+            const double sine = curvature * aside;
+            return std::sqrt(std::max(0.0, 1 - sine * sine));
+        };
+        return curvature * from_a * (chord - from_a) / (depth(from_a - chord / 2) + depth(chord / 2));
     }
 };
 
@@ -44,16 +45,16 @@ std::optional<ArcOverChord> arc_over(const Vec3& a, const Vec3& b, const Vec3& t
 }
 
 double height_of(const std::optional<ArcOverChord>& arc, double from_a, double chord) {
-    return arc && arc->curvature > 0 ? arc->height(from_a, chord) : 0;
+    return arc ? arc->height(from_a, chord) : 0;
 }
 
 /// The points between a and b on the mean of the circles that exist.
 Array<Vec3> between(const Vec3& a, const Vec3& b, const std::optional<ArcOverChord>& from_before,
                     const std::optional<ArcOverChord>& from_after, double chord_error) {
     Array<Vec3> points;
-    if (!from_before && !from_after) return points;
     const double chord = (b - a).norm();
     const double rise = std::max(height_of(from_before, chord / 2, chord), height_of(from_after, chord / 2, chord));
+    if (!(rise > chord_error)) return points;
     const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(rise / chord_error)), 1.0, most_parts));
     for (int i = 1; i < parts; ++i) {
         const double share = static_cast<double>(i) / parts;

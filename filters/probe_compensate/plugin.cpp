@@ -34,8 +34,8 @@ SCANMILL_FILTER() {
                at_least(0))
         .choice("tangent", &P::tangent,
                 {{"line", P::Tangent::line,
-                  "Of the circle through a pair and its neighbours in the line, where these are pairs and the line has "
-                  "no corner; else the cross product of the approaches."},
+                  "The direction of the circle through a pair and its neighbours in the line, where these are pairs and "
+                  "the line has no corner; else the cross product of the approaches."},
                  {"approaches", P::Tangent::approaches, "The cross product of the approaches."}},
                 "The direction of the edge at a pair.")
         .param("spacing", &P::spacing,
@@ -59,6 +59,8 @@ SCANMILL_FILTER() {
         .metric("lines", Unit::count, "Touched lines.")
         .metric("lone", Unit::count, "Touched points that are too far from their neighbours for a line.",
                 smaller_is_better)
+        .metric("repeated", Unit::count,
+                "Touched points that were left out of a line, because another point of the same place is in it.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud& touches = inputs.get<PointCloud>("points");
             const auto* plan = inputs.find<ProbePlan>("plan");

@@ -277,11 +277,13 @@ void join(std::vector<Made>& made, const Touches& touches, std::span<const std::
     std::vector<compensating::LinePoint> points;
     if (!touches.feature.empty())
         for (const std::size_t i : first_of_touch)
-            points.push_back({made[i].point.position, touches.feature[made[i].rows[0]]});
+            points.push_back(
+                {made[i].point.position, touches.feature[made[i].rows[0]], made[i].balls.has_value()});
     std::optional<double> spacing;
     if (params.spacing) spacing = params.spacing->value();
     compensating::TouchedLines lines = compensating::touched_lines(result.points.frame, points, spacing);
     result.lone = lines.lone;
+    result.repeated = lines.repeated;
     result.features = std::move(lines.graph);
     if (params.tangent == ProbeCompensateParams::Tangent::line)
         correct(made, first_of_touch, lines.points, radius, result);
@@ -329,6 +331,7 @@ void report(const ProbeCompensateResult& result, Context& context) {
     metric("curved", result.curved);
     metric("lines", result.features.polylines.size());
     metric("lone", result.lone);
+    metric("repeated", result.repeated);
 }
 
 }  // namespace

@@ -58,6 +58,8 @@ struct ProbeCompensateResult {
     std::size_t paired = 0, single = 0, unused = 0, lone = 0;
     /// Pairs whose tangent is that of their line.
     std::size_t curved = 0;
+    /// Points left out of the lines, because another point of the same place is in them.
+    std::size_t repeated = 0;
 };
 
 /// Reads the columns `approach` (three numbers: the unit vector u from the part to the probe), and, if they exist,
@@ -90,7 +92,7 @@ struct ProbeCompensateResult {
 /// Doubts its result if the contact normals of the median pair are less than half or more than 1.5 times as far apart
 /// as its approaches: the radius or `reported` is probably wrong.
 /// Deterministic; one thread. Cost: O(n log n) for n rows, and O(k²) for a touch with k rows.
-/// Metrics: `points`, `paired`, `single`, `unused`, `curved`, `lines`, `lone`.
+/// Metrics: `points`, `paired`, `single`, `unused`, `curved`, `lines`, `lone`, `repeated`.
 ProbeCompensateResult probe_compensate(const PointCloud& touches, const ProbeCompensateParams& params,
                                        Context& context);
 

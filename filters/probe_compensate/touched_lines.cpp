@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "probe_compensate/touched_lines.hpp"
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -17,8 +18,8 @@ constexpr double gap = 2;
 /// line of three touches are 2 spacings apart, and those of a closed line 1.
 constexpr double closing = 1.5;
 
-/// Touches of one edge point: nearer than this many spacings. Where the line of a scan zigzags, two of its reference
-/// points can belong to one point of the true edge, even in the wrong order.
+/// Touches nearer than this many distances of neighbours are of one edge point. Where the line of a scan zigzags, two of
+/// its reference points can belong to one point of the true edge, even in the wrong order.
 constexpr double repeated = 0.25;
 
 class LineMaker {
@@ -38,14 +39,25 @@ public:
             return;
         }
         const double spacing = spacing_ ? *spacing_ : median(distances);
+        const double least = repeated * std::min(spacing, median(distances));
         std::vector<std::size_t> kept;
         const auto is_repeated = [&](std::size_t point, std::size_t other) {
             const double distance = (at(point) - at(other)).norm();
-            return distance == 0 || distance < repeated * spacing;
+            return distance == 0 || distance < least;
+        };
+        const auto keep_better = [&](std::size_t& point, std::size_t other) {
+            ++lines_.repeated;
+            if (points_[other].is_exact && !points_[point].is_exact) point = other;
         };
         for (const std::size_t point : sequence)
-            if (kept.empty() || !is_repeated(point, kept.back())) kept.push_back(point);
-        while (kept.size() > 3 && is_repeated(kept.back(), kept.front())) kept.pop_back();
+            if (kept.empty() || !is_repeated(point, kept.back()))
+                kept.push_back(point);
+            else
+                keep_better(kept.back(), point);
+        while (kept.size() > 3 && is_repeated(kept.back(), kept.front())) {
+            keep_better(kept.front(), kept.back());
+            kept.pop_back();
+        }
         sequence = std::move(kept);
         distances = distances_along(sequence);
         const std::size_t count = sequence.size();

@@ -151,34 +151,39 @@ bool is_chosen(FeatureType type, const LineChoice& choice) {
     return type == FeatureType::hole ? choice.holes : choice.boundaries;
 }
 
+std::vector<Line> read_lines(const FeatureGraph& graph, const LineChoice& choice) {
+    std::vector<Line> lines;
+    for (u32 row = 0; row < graph.polylines.size(); ++row)
+        if (is_chosen(graph.polylines[row].type, choice)) lines.push_back(read_line(graph, row));
+    find_stops(graph, lines);
+    return lines;
+}
+
+/// Throws Error: no line of the features is chosen, or all chosen creases were left out.
+[[noreturn]] void refuse_empty(const FeatureGraph& features, std::size_t left_out) {
+    std::array<std::size_t, 3> counts{};
+    for (const FeaturePolyline& line : features.polylines) ++counts[static_cast<std::size_t>(line.type)];
+    throw Error("there is no line to probe: the features have {}, {} and {}{}",
+                count_text(counts[0], "outer boundary", "outer boundaries"), count_text(counts[1], "hole", "holes"),
+                count_text(counts[2], "crease", "creases"),
+                left_out == 0 ? "" : ", of which none is part of a line of twice the scanner-error")
+        .hint(features.polylines.empty() ? "a closed mesh without sharp edges has no features; lower `sharp-angle` in "
+                                           "the filter that finds them"
+              : left_out > 0 ? "a finer scan with smaller voxels and a smaller scanner-error has longer edges"
+                             : "`features: all` probes every line");
+}
+
 }  // namespace
 
-ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error) {
+ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error, const Context& context) {
     require_consistent(features);
-    const WholeLines whole = whole_lines(features, error);
-    const FeatureGraph& graph = whole.features;
-    ChosenLines chosen;
-    chosen.left_out = whole.left_out;
-    std::array<std::size_t, 3> counts{};
-    for (u32 row = 0; row < graph.polylines.size(); ++row) {
-        const FeatureType type = graph.polylines[row].type;
-        ++counts[static_cast<std::size_t>(type)];
-        if (is_chosen(type, choice)) chosen.lines.push_back(read_line(graph, row));
+    ChosenLines chosen{read_lines(features, choice), 0};  // before any join, so errors name the rows of the features
+    if (choice.creases) {
+        const WholeLines whole = whole_lines(features, error, context);
+        chosen = {read_lines(whole.features, choice), whole.left_out};
+        for (Line& line : chosen.lines) line.row = whole.rows[line.row];
     }
-    if (chosen.lines.empty())
-        throw Error("there is no line to probe: the features have {}, {} and {}{}",
-                    count_text(counts[0], "outer boundary", "outer boundaries"), count_text(counts[1], "hole", "holes"),
-                    count_text(counts[2], "crease", "creases"),
-                    chosen.left_out == 0 ? ""
-                                         : fmt::format(", and {} within the scanner-error of each other",
-                                                       count_text(chosen.left_out, "crease", "creases")))
-            .hint(features.polylines.empty() ? "a closed mesh without sharp edges has no features; lower `sharp-angle` "
-                                               "in the filter that finds them"
-                  : chosen.left_out > 0 ? "a finer scan with smaller voxels and a smaller scanner-error has longer "
-                                          "edges"
-                                        : "`features: all` probes every line");
-    find_stops(graph, chosen.lines);
-    for (Line& line : chosen.lines) line.row = whole.rows[line.row];
+    if (chosen.lines.empty()) refuse_empty(features, chosen.left_out);
     return chosen;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scanmill/data/features.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::probing {
 
@@ -17,11 +18,11 @@ inline constexpr double sqrt_half = std::numbers::sqrt2 / 2;
 /// A polyline with the values that are computed once per segment. Segment i starts at vertex i. The last segment of a
 /// closed line ends at vertex 0.
 struct Line {
-    u32 row = 0;  ///< of the line, or of its first part, among the features
+    u32 row = 0;  ///< the line's row in the features; for a joined line, the row of its first part
     FeatureType type{};
     bool closed = false;
-    Array<Vec3> points, left,
-        right;  ///< right: zero if unknown, or within 45 degrees of the line's direction
+    Array<Vec3> points;
+    Array<Vec3> left, right;  ///< normals; on the right zero if unknown or within 45 degrees of the line's direction
     Array<Vec3> directions;
     Array<double> lengths;
     Array<double> arcs;  ///< arc length at which each segment begins, then the whole length
@@ -51,12 +52,12 @@ struct LineChoice {
 
 struct ChosenLines {
     std::vector<Line> lines;
-    std::size_t left_out = 0;  ///< short creases
+    std::size_t left_out = 0;  ///< creases
 };
 
 /// Returns the chosen lines in the order of their rows, with creases made whole by whole_lines(). Throws Error as
 /// find_reference_points() does.
-ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error);
+ChosenLines chosen_lines(const FeatureGraph& features, const LineChoice& choice, double error, const Context& context);
 
 /// Consecutive segments around one segment.
 struct Window {

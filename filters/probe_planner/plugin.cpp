@@ -98,8 +98,8 @@ SCANMILL_FILTER() {
                 "Distance of the lines' vertices from smooth curves (95 % quantile); a part of scanner-error.",
                 smaller_is_better)
         .metric(
-            "short-creases", Unit::count,
-            "Creases shorter than twice scanner-error that were left out: branches, double paths and isolated ones.")
+            "left-out-creases", Unit::count,
+            "Creases that were left out: one side of bevels narrower than twice scanner-error, and shorter branches.")
         .metric("paired-lines", Unit::count, "Pairs of lines of two patches along one edge, which is probed once.")
         .metric("single", Unit::count, "Reference points with one touch although two were asked for.",
                 smaller_is_better)

@@ -362,7 +362,7 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
                                                           {"too-tilted", result.too_tilted},
                                                           {"false-touches", result.false_touches},
                                                           {"wrong-contacts", result.wrong_contacts},
-                                                          {"short-creases", result.short_creases},
+                                                          {"left-out-creases", result.left_out_creases},
                                                           {"paired-lines", result.paired_lines},
                                                           {"single", result.single}};
     for (const auto& [name, number] : counts) context.metric(name, static_cast<double>(number));
@@ -457,7 +457,7 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
     const std::vector<u32> tour = tour_over(lines, plan.touches, machine.home(), machine.diagonal(), context);
     result.travel = add_moves(plan, tour, machine, context);
     result.edge_roughness = references.edge_roughness;
-    result.short_creases = references.short_creases;
+    result.left_out_creases = references.left_out_creases;
     result.paired_lines = references.paired_lines;
     count(result, settings.two_directions);
     report(result, settings, context);

@@ -71,7 +71,7 @@ struct ProbePlannerResult {
     std::size_t wrong_contacts = 0;
     double travel = 0;  ///< length of all moves
     double edge_roughness = 0;
-    std::size_t short_creases = 0;  ///< left out, see reference_points.hpp
+    std::size_t left_out_creases = 0;  ///< left out, see reference_points.hpp
     std::size_t paired_lines = 0;
     /// With two `directions`: number of reference points that got one touch. There, the range leaves less than 10
     /// degrees between two touches, or one of the two is too tilted, obstructed or does not pass a hole.

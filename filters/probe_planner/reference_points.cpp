@@ -282,12 +282,12 @@ void add_roughness(const Line& line, std::vector<double>& distances) {
 
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
                                       const TriangleTree& mesh, double error, double radius, const Context& context) {
-    const ChosenLines chosen = chosen_lines(features, choice, error);
+    const ChosenLines chosen = chosen_lines(features, choice, error, context);
     const std::vector<Line>& lines = chosen.lines;
     context.check_cancelled();
     const Pairs pairs(lines, context);
     ReferencePoints result;
-    result.short_creases = chosen.left_out;
+    result.left_out_creases = chosen.left_out;
     result.paired_lines = pairs.count();
     std::vector<double> distances, lengths;
     for (u32 number = 0; number < lines.size(); ++number) {

@@ -42,8 +42,8 @@ struct Chain {
 struct ReferencePoints {
     std::vector<ReferencePoint> points;
     std::vector<Chain> chains;
-    /// Number of creases shorter than twice the error that were left out.
-    std::size_t short_creases = 0;
+    /// Number of creases that whole_lines() left out.
+    std::size_t left_out_creases = 0;
     /// Number of pairs of boundary lines along one edge. The later line is left out there.
     std::size_t paired_lines = 0;
     /// 95 % quantile of the roughness at the vertices of lines with 16 or more vertices; 0 without such lines. The
@@ -52,8 +52,8 @@ struct ReferencePoints {
     double edge_roughness = 0;
 };
 
-/// First, creases are made whole: short branches and double paths of less than twice `error` are left out, and the
-/// parts that they separated are joined (see whole_lines.hpp). Lines are numbered after that.
+/// First, creases are made whole: of two sides of a bevel one is left out, and so are short branches; the parts between
+/// are joined (see whole_lines.hpp). Lines are numbered after that.
 ///
 /// Finds reference points at about `spacing`. A closed line gets max(3, round(length / spacing)) points at equal arc
 /// lengths. An open line gets max(1, round(length / spacing)) points; the outer ones are half a spacing from its ends.

@@ -2,6 +2,7 @@
 #include "probe_planner/whole_lines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -81,11 +82,12 @@ public:
     }
 
     /// Returns the number of creases left out.
-    std::size_t clean() {
+    std::size_t clean(const Context& context) {
         for (u32 row = 0; row < paths_.size(); ++row) queue(row);
+        std::size_t left_out = open_cells(context, true);  // before joins would make one closed crease of a ring
         for (u32 vertex = 0; vertex < ends_.size(); ++vertex) join_at(vertex);
-        std::size_t left_out = cut_branches();
-        while (const std::size_t opened = open_cells()) left_out += opened + cut_branches();
+        left_out += cut_branches();
+        while (const std::size_t opened = open_cells(context)) left_out += opened + cut_branches();
         return left_out;
     }
 
@@ -126,24 +128,43 @@ private:
         return left_out;
     }
 
-    bool is_near(u32 vertex, const Path& path) const {
-        const Vec3& point = positions_[vertex];
-        for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
-            const Vec3 &a = positions_[path.vertices[i]], &b = positions_[path.vertices[i + 1]];
-            if ((point - nearest_on_segment(point, a, b)).norm() < shortest_) return true;
+    /// Whether every point is nearer to the polyline than `shortest_`. Consecutive points are near consecutive segments,
+    /// so the search for a segment begins at the last one and goes outwards.
+    bool are_near(std::span<const u32> points, std::span<const u32> polyline) const {
+        const std::size_t segments = polyline.size() - 1;
+        const auto is_near = [&](const Vec3& point, std::size_t i) {
+            const Vec3 &a = positions_[polyline[i]], &b = positions_[polyline[i + 1]];
+            return (point - nearest_on_segment(point, a, b)).norm() < shortest_;
+        };
+        std::size_t at = 0;
+        for (const u32 vertex : points) {
+            const Vec3& point = positions_[vertex];
+            bool found = false;
+            for (std::size_t away = 0; !found && away < segments; ++away) {
+                if (at + away < segments && is_near(point, at + away)) {
+                    found = true;
+                    at += away;
+                } else if (away <= at && is_near(point, at - away)) {
+                    found = true;
+                    at -= away;
+                }
+            }
+            if (!found) return false;
         }
-        return false;
+        return true;
     }
 
-    /// Whether the crease and the way are nearer to each other than `shortest_` everywhere.
-    bool are_beside(const Path& path, std::span<const u32> way) const {
-        const auto on_way = [&](u32 vertex) {
-            return std::ranges::any_of(way, [&](u32 row) { return is_near(vertex, paths_[row]); });
-        };
-        const auto on_path = [&](u32 row) {
-            return std::ranges::all_of(paths_[row].vertices, [&](u32 vertex) { return is_near(vertex, path); });
-        };
-        return std::ranges::all_of(path.vertices, on_way) && std::ranges::all_of(way, on_path);
+    /// The vertices of the creases that lead from `vertex` to one another.
+    Array<u32> vertices_of(std::span<const u32> way, u32 vertex) const {
+        Array<u32> all{vertex};
+        for (const u32 row : way) {
+            if (paths_[row].end(false) == vertex)
+                all.insert(all.end(), paths_[row].vertices.begin() + 1, paths_[row].vertices.end());
+            else
+                all.insert(all.end(), paths_[row].vertices.rbegin() + 1, paths_[row].vertices.rend());
+            vertex = all.back();
+        }
+        return all;
     }
 
     /// A crease and the shortest way round it as ascending rows; empty if they are no cell.
@@ -170,7 +191,8 @@ private:
         if (!came_by.contains(to)) return cell;
         for (u32 vertex = to; vertex != from; vertex = other_end(cell.back(), vertex))
             cell.push_back(came_by.at(vertex));
-        if (!are_beside(path, cell)) return {};
+        const Array<u32> way = vertices_of(cell, to);
+        if (!are_near(path.vertices, way) || !are_near(way, path.vertices)) return {};
         cell.push_back(row);
         std::ranges::sort(cell);
         return cell;
@@ -180,24 +202,38 @@ private:
         return paths_[row].end(false) == vertex ? paths_[row].end(true) : paths_[row].end(false);
     }
 
+    /// Whether nothing else meets the creases of the cell.
+    bool is_ring(std::span<const u32> cell) const {
+        return std::ranges::all_of(cell, [&](u32 row) {
+            return std::ranges::all_of(std::array{paths_[row].end(false), paths_[row].end(true)},
+                                       [&](u32 vertex) { return ends_[vertex].size() == 2 && !is_fixed_[vertex]; });
+        });
+    }
+
     /// Returns the number of creases left out.
-    std::size_t open_cells() {
+    std::size_t open_cells(const Context& context, bool only_rings = false) {
         std::set<Array<u32>> cells;
-        for (u32 row = 0; row < paths_.size(); ++row)
+        for (u32 row = 0; row < paths_.size(); ++row) {
+            context.check_cancelled();
             if (paths_[row].is_open_crease)
-                if (Array<u32> cell = cell_of(row); !cell.empty()) cells.insert(std::move(cell));
+                if (Array<u32> cell = cell_of(row); !cell.empty() && (!only_rings || is_ring(cell)))
+                    cells.insert(std::move(cell));
+        }
         std::map<u32, std::set<const Array<u32>*, Before>> cells_of;  // by crease
         for (const Array<u32>& cell : cells)
             for (const u32 row : cell) cells_of[row].insert(&cell);
 
         std::vector<bool> is_beside(ends_.size());  // vertices of creases that were left out
-        using Key = std::tuple<bool, double, u32>;
+        std::vector<bool> is_side(paths_.size());  // creases that never were in two cells
+        for (const auto& [row, its] : cells_of) is_side[row] = its.size() == 1;
+        using Key = std::tuple<bool, bool, double, u32>;
         std::set<Key, std::greater<>> free;
         const auto key = [&](u32 row) {
-            return Key(is_beside[paths_[row].end(false)] || is_beside[paths_[row].end(true)], paths_[row].length, row);
+            const Path& path = paths_[row];
+            return Key(is_side[row], is_beside[path.end(false)] || is_beside[path.end(true)], path.length, row);
         };
         for (const auto& [row, its] : cells_of)
-            if (its.size() == 1) free.insert(key(row));
+            if (is_side[row]) free.insert(key(row));
         Array<u32> opened;
         while (!free.empty()) {
             const u32 row = std::get<u32>(*free.begin());
@@ -282,10 +318,10 @@ private:
 
 }  // namespace
 
-WholeLines whole_lines(const FeatureGraph& features, double error) {
+WholeLines whole_lines(const FeatureGraph& features, double error, const Context& context) {
     Network network(features, error);
     WholeLines result;
-    result.left_out = network.clean();
+    result.left_out = network.clean(context);
     if (result.left_out == 0) {
         result.features = features;
         result.rows.resize(features.polylines.size());

@@ -4,6 +4,7 @@
 /// two creases with many short ones between them, and short branches.
 
 #include "scanmill/data/features.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::probing {
 
@@ -15,18 +16,20 @@ struct WholeLines {
     std::size_t left_out = 0;  ///< creases
 };
 
-/// Leaves out creases that lie within `error` of a line that stays, and joins the others where only two ends meet:
-/// 1. Cells. A crease and the shortest way round from one of its ends to the other are a cell if they are nearer to
-/// each
-///    other than 2 `error` everywhere, and the way is longer by less than 4 `error`: they are the sides of a bevel and
-///    what joins them. A cell opens at a crease that is in no other cell: first at one beside a crease that was left
-///    out, so that one side of a bevel stays whole; among these at the longest (ties: the higher row).
+/// Leaves out creases that lie beside a line that stays, or branch off it, and joins the others where only two ends
+/// meet:
+/// 1. Cells. A crease and the shortest way round from one of its ends to the other are a cell if two conditions are met.
+///    They are nearer to each other than 2 `error` everywhere, and the way is longer by less than 4 `error`. Such cells
+///    lie between the two sides of a bevel. A crease from a vertex to itself is a cell if it is shorter than 4 `error`.
+///    A cell opens at a crease that is in no other cell. A crease on a side of the bevel, in one cell from the start,
+///    goes before one across it. Then a crease beside one that was left out goes first, so that the other side stays
+///    whole; then the longest (ties: the higher row).
 /// 2. Branches. Creases shorter than 2 `error` with a free end go, the shortest first (ties: the higher row).
 /// Both repeat until nothing changes. Boundaries and closed creases stay as they are, and so do all lines if nothing is
 /// left out.
 ///
-/// Pre: the arrays of the features fit together. Cost: O(n log n) in the creases and those that the ways round pass;
-/// sides of k vertices are compared in O(k²).
-WholeLines whole_lines(const FeatureGraph& features, double error);
+/// Pre:  the arrays of the features fit together; the vertices of creases are finite.
+/// Cost: O(n log n) in the creases and those that the ways round pass, and linear in their vertices, for each round.
+WholeLines whole_lines(const FeatureGraph& features, double error, const Context& context);
 
 }  // namespace scanmill::probing

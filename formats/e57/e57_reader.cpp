@@ -114,9 +114,11 @@ public:
             throw Error("has no scans{}",
                         contents.images > 0
                             ? ", only " + count_text(contents.images, "image", "images") + "; images are not read"
-                            : "");
+                            : "")
+                .hint("export it with its points");
         if (options_.view > contents.scans)
-            throw Error("has no scan {}; it has {}", options_.view, count_text(contents.scans, "scan", "scans"));
+            throw Error("has no scan {}; it has {}", options_.view, count_text(contents.scans, "scan", "scans"))
+                .hint("scans are counted from #1");
         const ::e57::ImageFile file = translated([&] { return opened(bytes_); });
         describe(file, contents);
         require_room();

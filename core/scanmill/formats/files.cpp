@@ -25,16 +25,29 @@ OnWarning warnings_of(const std::filesystem::path& path, const ReadOptions& opti
     return options.names_file ? warnings_with_file_name(path, options.on_warning) : options.on_warning;
 }
 
+/// Runs the action. An Error without a hint gets this one.
+template <class Action>
+auto with_hint(const char* hint, Action&& action) {
+    try {
+        return action();
+    } catch (Error& error) {
+        if (error.hint().empty() && error.remedy() == Remedy::none) error.set_hint(hint);
+        throw;
+    }
+}
+
 LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
-    if (file.bytes.empty()) throw Error("is empty (0 bytes)");
+    if (file.bytes.empty()) throw Error("is empty (0 bytes)").hint("fetch or export it again");
     const OnWarning on_warning = warnings_of(file.path, options);
     const std::optional<Array<char>> content = unwrapped(file.bytes, on_warning);
     FileBytes plain{file.path, content ? std::string_view(content->data(), content->size()) : file.bytes};
     if (is_marked_text(plain.bytes)) plain.bytes = without_byte_order_mark(plain.bytes);
     const Format& format = format_of(plain);
     if (options.view > 1 && !format.count_views)
-        throw Error("has no view {}: {} files hold one", options.view, format.name);
-    LoadedFile loaded = format.read(plain, {on_warning, options.unit, true, options.view});
+        throw Error("has no view {}: {} files hold one", options.view, format.name).hint("name it without #");
+    LoadedFile loaded = with_hint("fetch or export it again, or convert it to PLY by the program that made it", [&] {
+        return format.read(plain, {on_warning, options.unit, true, options.view});
+    });
     if (content) loaded.encoding += wrapping_of(file.bytes) == Wrapping::gzip ? ", gzip" : ", UTF-16";
     return loaded;
 }

@@ -51,7 +51,7 @@ TEST(FillHolesOuter, AStandingFiguresBase_IsClosedByDefault_WithADoubtThatNamesT
     EXPECT_THAT(kept.warnings, IsEmpty()) << "it was asked for";
 }
 
-TEST(FillHolesOuter, OfAnOpenSurface_SmallHolesAreFilled) {
+TEST(FillHolesOuter, SmallHolesInAnOpenSurface_AreFilled) {
     const TriangleMesh mesh = without_triangles(cup(0), {3, 400, 900});
     for (const Outer outer : {Outer::automatic, Outer::keep}) {
         const Filled result = filled(mesh, with(outer));
@@ -61,25 +61,41 @@ TEST(FillHolesOuter, OfAnOpenSurface_SmallHolesAreFilled) {
     }
 }
 
-TEST(FillHolesOuter, OfAnOpenSurface_LargeHolesStayOpenToo) {
-    // A sheet of 20 x 20 cells with a window of 4 x 4: 4 % of the sheet.
-    TriangleMesh sheet;
+/// A wavy sheet of 20 x 20 cells without those that `leaves_out` is true for.
+template <class LeavesOut>
+TriangleMesh sheet(LeavesOut&& leaves_out) {
+    TriangleMesh mesh;
     Array<Vec3> positions;
     Array<Triangle> triangles;
     for (u32 y = 0; y <= 20; ++y)
         for (u32 x = 0; x <= 20; ++x) positions.emplace_back(x, y, 0.1 * ((x * y) % 3));
     for (u32 y = 0; y < 20; ++y)
         for (u32 x = 0; x < 20; ++x) {
-            if (x >= 8 && x < 12 && y >= 8 && y < 12) continue;
+            if (leaves_out(x, y)) continue;
             const u32 a = 21 * y + x;
             triangles.push_back({a, a + 1, a + 22});
             triangles.push_back({a, a + 22, a + 21});
         }
-    sheet.positions = std::move(positions);
-    sheet.triangles = std::move(triangles);
-    const TriangleMesh mesh = without_unused_vertices(sheet);
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return without_unused_vertices(mesh);
+}
+
+TEST(FillHolesOuter, LargeHolesInAnOpenSurface_StayOpenToo) {
+    const TriangleMesh mesh =  // the window has 4 % of the sheet
+        sheet([](u32 x, u32 y) { return x >= 8 && x < 12 && y >= 8 && y < 12; });
     EXPECT_EQ(filled(mesh).outer, 2u);
     EXPECT_EQ(filled(mesh, with(Outer::fill)).outer, 0u);
+}
+
+TEST(FillHolesOuter, SeparateSheets_NeedToBeKept) {
+    // Three strips, each with a third of the area; a box whose sides and lid are separate looks the same.
+    const TriangleMesh strips = sheet([](u32 x, u32) { return x == 6 || x == 13; });
+    const Filled kept = filled(strips, with(Outer::keep));
+    EXPECT_EQ(kept.outer, 3u);
+    EXPECT_EQ(kept.filled, 0u);
+    EXPECT_NEAR(kept.metrics.find("largest-share")->value, 1.0 / 3, 0.01);
+    EXPECT_EQ(filled(strips).outer, 0u);
 }
 
 TEST(FillHolesOuter, RequiredClosing_FillsThemAll) {

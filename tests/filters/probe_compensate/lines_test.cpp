@@ -113,6 +113,25 @@ TEST(ProbeCompensateLines, ATouchAtThePositionOfItsPredecessor_IsLeftOut) {
     EXPECT_EQ(one.lone, 1u);
 }
 
+TEST(ProbeCompensateLines, TouchesOfOnePlace_CountOnce_AndAPairStandsForSingles) {
+    std::vector<Touch> touches = along_y({0, 1, 2});
+    touches.push_back(touch_of({0, 2.1, 0}, 0.3, 0, 1, 3));
+    touches.push_back(touch_of({0, 2.1, 0}, -0.3, 0, 1, 3));
+    touches.push_back(touch_of({0, 3, 0}, 0, 0, 1, 4));
+    const Compensated result = compensated(touches, with_radius(1));
+    ASSERT_EQ(result.features.positions.size(), 4u);
+    EXPECT_NEAR(result.features.positions[2].y(), 2.1, 1e-12) << "the pair, not the single touch before it";
+    EXPECT_EQ(result.metrics.find("repeated")->value, 1);
+}
+
+TEST(ProbeCompensateLines, AGivenSpacingFarAboveTheTouches_LeavesNoneOut) {
+    ProbeCompensateParams params = with_radius(1);
+    params.spacing = 10;
+    const Compensated result = compensated(along_y({0, 1, 2, 3}), params);
+    EXPECT_EQ(result.features.positions.size(), 4u);
+    EXPECT_EQ(result.metrics.find("repeated")->value, 0);
+}
+
 TEST(ProbeCompensateLines, WithoutTheColumnFeature_ThereAreNone) {
     const Compensated result = compensated(cloud_of(along_y({0, 1, 2}), Columns::without_feature), with_radius(1));
     EXPECT_TRUE(result.features.polylines.empty());

@@ -6,13 +6,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
 namespace scanmill::test {
 namespace {
 
-using probing::whole_lines;
 using probing::WholeLines;
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
@@ -45,6 +45,11 @@ FeatureGraph graph_of(const Array<Vec3>& positions, const std::vector<Line>& lin
     graph.left_normals = std::move(left);
     graph.right_normals = std::move(right);
     return graph;
+}
+
+WholeLines whole_lines(const FeatureGraph& graph, double error) {
+    Context context;
+    return probing::whole_lines(graph, error, context);
 }
 
 Array<u32> vertices_of(const FeatureGraph& graph, std::size_t row) {
@@ -99,33 +104,52 @@ TEST(WholeLines, ABranch_IsLeftOutAndItsLineIsJoined) {
     EXPECT_EQ(whole_lines(graph, 0.5).left_out, 0u) << "a branch of exactly 2 errors stays";
 }
 
-TEST(WholeLines, ALadder_BecomesItsOneSide) {
-    // Two rails of ten segments, one apart, with a rung at every vertex; a line at either end of the lower rail.
+/// Two rails of `count` segments with a rung at every vertex, `width` apart, and a line at either end of the lower rail.
+FeatureGraph ladder(u32 count, double segment, double width) {
     Array<Vec3> positions;
     std::vector<Line> lines;
-    for (u32 i = 0; i <= 10; ++i) {
-        positions.emplace_back(i, 0, 0);
-        positions.emplace_back(i, 0.8, 0);
+    for (u32 i = 0; i <= count; ++i) {
+        positions.emplace_back(segment * i, 0, 0);
+        positions.emplace_back(segment * i, width, 0);
     }
     positions.emplace_back(-9, 0, 0);
-    positions.emplace_back(19, 0, 0);
-    lines.push_back({{22, 0}});
-    for (u32 i = 0; i < 10; ++i) {
+    positions.emplace_back(segment * count + 9, 0, 0);
+    lines.push_back({{2 * count + 2, 0}});
+    for (u32 i = 0; i < count; ++i) {
         lines.push_back({{2 * i, 2 * i + 2}});
         lines.push_back({{2 * i + 1, 2 * i + 3}});
         lines.push_back({{2 * i, 2 * i + 1}});
     }
-    lines.push_back({{20, 21}});
-    lines.push_back({{20, 23}});
-    const WholeLines whole = whole_lines(graph_of(positions, lines), 1);
-    ASSERT_EQ(whole.features.polylines.size(), 1u);
-    const Array<u32> line = vertices_of(whole.features, 0);
-    EXPECT_EQ(line.front(), 22u);
-    EXPECT_EQ(line.back(), 23u);
-    double length = 0;
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (positions[line[i + 1]] - positions[line[i]]).norm();
-    EXPECT_LE(length, 28 + 2 * 0.8) << "on one rail, apart from its ends";
-    expect_normals(whole.features);
+    lines.push_back({{2 * count, 2 * count + 1}});
+    lines.push_back({{2 * count, 2 * count + 3}});
+    return graph_of(positions, lines);
+}
+
+TEST(WholeLines, ALadder_BecomesItsOneSide) {
+    for (const double segment : {0.3, 0.7, 1.0, 3.0})
+        for (const double width : {0.3, 0.8, 1.5}) {
+            SCOPED_TRACE(testing::Message() << "rails of " << segment << ", rungs of " << width);
+            const FeatureGraph graph = ladder(10, segment, width);
+            const WholeLines whole = whole_lines(graph, 1);
+            ASSERT_EQ(whole.features.polylines.size(), 1u);
+            const Array<u32> line = vertices_of(whole.features, 0);
+            EXPECT_THAT((std::array{line.front(), line.back()}), UnorderedElementsAre(22u, 23u));
+            double length = 0;
+            for (std::size_t i = 0; i + 1 < line.size(); ++i)
+                length += (graph.positions[line[i + 1]] - graph.positions[line[i]]).norm();
+            EXPECT_LE(length, 10 * segment + 18 + 2 * width + 1e-9) << "on one rail, apart from its ends";
+            expect_normals(whole.features);
+        }
+}
+
+TEST(WholeLines, IsolatedSlits_LoseOneSide) {
+    // A rectangle of 20 x 0.8 in four creases, and two creases on one another.
+    const FeatureGraph rectangle =
+        graph_of({{0, 0, 0}, {20, 0, 0}, {20, 0.8, 0}, {0, 0.8, 0}}, {{{0, 1}}, {{1, 2}}, {{2, 3}}, {{3, 0}}});
+    EXPECT_THAT(lines_of(whole_lines(rectangle, 1)), ElementsAre(UnorderedElementsAre(0, 1, 2, 3)));
+    EXPECT_EQ(whole_lines(rectangle, 1).left_out, 1u);
+    const FeatureGraph twice = graph_of({{0, 0, 0}, {9, 0, 0}, {20, 0, 0}}, {{{0, 1, 2}}, {{2, 1, 0}}});
+    EXPECT_THAT(lines_of(whole_lines(twice, 1)), ElementsAre(ElementsAre(0, 1, 2)));
 }
 
 TEST(WholeLines, ALongBevel_BecomesItsShorterSide) {
