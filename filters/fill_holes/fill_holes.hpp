@@ -109,8 +109,8 @@ struct FillHolesResult {
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles, about 1 µs for each if there
 /// is a loop. Triangulating n vertices takes about n² time. Closing together takes O(n log n) time and about 2 kB per
 /// vertex, for all vertices.
-/// Metrics: `filled`, `left`, `outer`, `largest-share`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`,
-/// `together`, `replaced-triangles`, `failed`.
+/// Metrics: `filled`, `left`, `outer`, `largest-share`, `added-triangles`, `added-points`, `area`, `share`, `longest`,
+/// `plain`, `together`, `replaced-triangles`, `failed`.
 FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);
 
 }  // namespace scanmill

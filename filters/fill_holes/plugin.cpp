@@ -24,15 +24,16 @@ SCANMILL_FILTER() {
                            "The input's vertices and triangles in their rows, then the new ones. The face column "
                            "`filled` and the vertex column `filled` are 1 for new rows. Other columns of new rows have "
                            "the values of the boundary beside them.")
-        .choice("outer", &P::outer,
-                {{"auto", P::Outer::automatic,
-                  fmt::format("A surface with a loop that would add {0:g} % to its area if it were closed flat is open, as "
-                              "masks, terrain and plates. Then all loops of {1:g} % or more stay open, otherwise none.",
-                              100 * P::outer_share, 100 * P::large_share)},
-                 {"keep", P::Outer::keep,
-                  fmt::format("Loops that would add {:g} % or more to the mesh stay open.", 100 * P::large_share)},
-                 {"fill", P::Outer::fill, "Every loop is filled."}},
-                "The loops that are outer boundaries and stay open.")
+        .choice(
+            "outer", &P::outer,
+            {{"auto", P::Outer::automatic,
+              fmt::format("A surface with a loop that would add {0:g} % to its area if it were closed flat is open, as "
+                          "masks, terrain and plates. Then all loops of {1:g} % or more stay open, otherwise none.",
+                          100 * P::outer_share, 100 * P::large_share)},
+             {"keep", P::Outer::keep,
+              fmt::format("Loops that would add {:g} % or more to the mesh stay open.", 100 * P::large_share)},
+             {"fill", P::Outer::fill, "Every loop is filled."}},
+            "The loops that are outer boundaries and stay open.")
         .choice("closed", &P::must_close,
                 {{"auto", false, "Loops may stay open; those without a filling make the result doubtful."},
                  {"required", true, "Every loop is filled, also outer ones; it is an error if that fails."}},

@@ -32,12 +32,13 @@ SCANMILL_FILTER() {
         .param("scanner-error", &P::scanner_error,
                "Largest distance of a reference point from the true edge; single touches are so uncertain.",
                at_least(0))
-        .choice("tangent", &P::tangent,
-                {{"line", P::Tangent::line,
-                  "The direction of the circle through a pair and its neighbours in the line, where these are pairs and "
-                  "the line has no corner; else the cross product of the approaches."},
-                 {"approaches", P::Tangent::approaches, "The cross product of the approaches."}},
-                "The direction of the edge at a pair.")
+        .choice(
+            "tangent", &P::tangent,
+            {{"line", P::Tangent::line,
+              "The direction of the circle through a pair and its neighbours in the line, where these are pairs and "
+              "the line has no corner; else the cross product of the approaches."},
+             {"approaches", P::Tangent::approaches, "The cross product of the approaches."}},
+            "The direction of the edge at a pair.")
         .param("spacing", &P::spacing,
                "Distance of touches along a line; lines end where touches are twice as far apart. `auto` is the median "
                "of each feature.",

@@ -277,8 +277,7 @@ void join(std::vector<Made>& made, const Touches& touches, std::span<const std::
     std::vector<compensating::LinePoint> points;
     if (!touches.feature.empty())
         for (const std::size_t i : first_of_touch)
-            points.push_back(
-                {made[i].point.position, touches.feature[made[i].rows[0]], made[i].balls.has_value()});
+            points.push_back({made[i].point.position, touches.feature[made[i].rows[0]], made[i].balls.has_value()});
     std::optional<double> spacing;
     if (params.spacing) spacing = params.spacing->value();
     compensating::TouchedLines lines = compensating::touched_lines(result.points.frame, points, spacing);

@@ -18,8 +18,8 @@ constexpr double gap = 2;
 /// line of three touches are 2 spacings apart, and those of a closed line 1.
 constexpr double closing = 1.5;
 
-/// Touches nearer than this many distances of neighbours are of one edge point. Where the line of a scan zigzags, two of
-/// its reference points can belong to one point of the true edge, even in the wrong order.
+/// Touches nearer than this many distances of neighbours are of one edge point. Where the line of a scan zigzags, two
+/// of its reference points can belong to one point of the true edge, even in the wrong order.
 constexpr double repeated = 0.25;
 
 class LineMaker {

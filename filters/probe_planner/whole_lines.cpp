@@ -128,8 +128,8 @@ private:
         return left_out;
     }
 
-    /// Whether every point is nearer to the polyline than `shortest_`. Consecutive points are near consecutive segments,
-    /// so the search for a segment begins at the last one and goes outwards.
+    /// Whether every point is nearer to the polyline than `shortest_`. Consecutive points are near consecutive
+    /// segments, so the search for a segment begins at the last one and goes outwards.
     bool are_near(std::span<const u32> points, std::span<const u32> polyline) const {
         const std::size_t segments = polyline.size() - 1;
         const auto is_near = [&](const Vec3& point, std::size_t i) {

@@ -24,7 +24,7 @@ class MissesTest(unittest.TestCase):
         self.assertEqual(self.missed(mean=0.0101), ["mean"])
         self.assertEqual(self.missed(mean=0.0101, noise=0), [])
         grown = {"components": 1, "loops": 1}
-        self.assertEqual(self.missed(mean=0.0101, loops=1, grown=grown), [])
+        self.assertEqual(self.missed(mean=0.0101, loops=1, grown=grown), ["loops"], "an open model")
 
     def test_topology_is_that_of_the_model(self):
         self.assertEqual(self.missed(pieces=2), ["pieces"])

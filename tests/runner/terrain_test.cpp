@@ -25,9 +25,9 @@ double height_at(double x, double y) { return 20 - x * x / 200 - y * y / 150; }
 class Terrain : public testing::Test {
 protected:
     nlohmann::json metrics_of_filling(const std::string& scan) {
-        const ProgramResult ran =
-            scanmill_program({"run", test::source_folder() + "/workflows/terrain.yaml", scan, "-o", "out", "--json", "-q"},
-                             {.folder = folder_.path()});
+        const ProgramResult ran = scanmill_program(
+            {"run", test::source_folder() + "/workflows/terrain.yaml", scan, "-o", "out", "--json", "-q"},
+            {.folder = folder_.path()});
         EXPECT_EQ(ran.exit_code, 0) << ran.err;
         const nlohmann::json report = nlohmann::json::parse(ran.out);
         for (const nlohmann::json& step : report.at("steps"))

@@ -104,7 +104,8 @@ TEST(WholeLines, ABranch_IsLeftOutAndItsLineIsJoined) {
     EXPECT_EQ(whole_lines(graph, 0.5).left_out, 0u) << "a branch of exactly 2 errors stays";
 }
 
-/// Two rails of `count` segments with a rung at every vertex, `width` apart, and a line at either end of the lower rail.
+/// Two rails of `count` segments with a rung at every vertex, `width` apart, and a line at either end of the lower
+/// rail.
 FeatureGraph ladder(u32 count, double segment, double width) {
     Array<Vec3> positions;
     std::vector<Line> lines;
