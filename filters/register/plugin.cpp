@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegisterParams;
-    return Declare<P>("register", 1)
+    return Declare<P>("register", 2)
         .summary("Finds one motion per view that brings views without poses into one frame.")
         .source(
             "Rusu, Blodow, Beetz 2009; Chen, Sun, Yang, Tao 2022; Chen, Medioni 1992; Huber, Hebert 2003 for the views "
@@ -15,7 +15,7 @@ SCANMILL_FILTER() {
         .not_finite("Refused; the message gives the view, their number and the first one.")
         .in<PointCloud>("points",
                         "The views, each in a frame of its own. The side of the scanner is that of the column "
-                        "`approach`, else of `normal`, else +z with a warning.",
+                        "`approach`, else of `normal`; without both it is found in the points, with a warning.",
                         list)
         .in<TriangleMesh, PointCloud>(
             "target",

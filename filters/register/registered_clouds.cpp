@@ -10,6 +10,7 @@
 #include "merge/scan_poses.hpp"
 #include "register/register_to_target.hpp"
 #include "register/register_views.hpp"
+#include "register/scanner_side.hpp"
 #include "register/view_checks.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
@@ -106,21 +107,27 @@ Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Cont
 
 std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::string> names, Context& context) {
     std::vector<ViewToRegister> result;
-    std::vector<std::string> assumed;
+    std::vector<std::string> assumed, estimated;
     for (std::size_t i = 0; i < views.size(); ++i) {
         ViewToRegister view{names[i], views[i]->positions.span(), Vec3::UnitZ(), {}};
         const Vec3 direction = sum_of_directions(*views[i]);
-        if (direction.isZero(0))
-            assumed.push_back(names[i]);
-        else
+        if (!direction.isZero(0)) {
             view.to_scanner = direction;
+        } else {
+            view.to_scanner = registration::scanner_side(view.points);
+            (view.to_scanner == Vec3(Vec3::UnitZ()) ? assumed : estimated).push_back(names[i]);
+        }
         result.push_back(view);
     }
-    if (!assumed.empty())
+    const auto warn = [&](const std::vector<std::string>& which, const char* what) {
+        if (which.empty()) return;
         context.warn(
-            fmt::format("{} without a column `approach` or `normal`: the scanner is assumed on the side of +z ({})",
-                        count_text(assumed.size(), "view is", "views are"),
-                        enumerated(std::span<const std::string>(assumed).first(std::min(assumed.size(), most_named)))));
+            fmt::format("{} without a column `approach` or `normal`: {} ({})",
+                        count_text(which.size(), "view is", "views are"), what,
+                        enumerated(std::span<const std::string>(which).first(std::min(which.size(), most_named)))));
+    };
+    warn(assumed, "the scanner is assumed on the side of +z");
+    warn(estimated, "the side of the scanner is estimated, because +z would see much of the surface edge-on");
     return result;
 }
 
