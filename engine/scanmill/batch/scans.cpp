@@ -456,20 +456,28 @@ private:
         return std::nullopt;
     }
 
-    /// Calls `take` with every scan and its file. A missing file is only a warning, because it only fails the cells
-    /// that read it.
+    /// Calls `take` with every scan and its file, the only match of a path with wildcards. A missing file is only a
+    /// warning, because it only fails the cells that read it.
     template <class Take>
     void take_files(const YamlNode& node, const std::string& what, std::string_view forms, std::span<BatchScan> scans,
                     const Take& take) {
         const auto text = path_template(node, what, forms);
         if (!text) return;
         Complaints complaints;
+        const auto warn = [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); };
         for (BatchScan& scan : scans) {
-            const fs::path file = file_for(scan, *text);
+            fs::path file = file_for(scan, *text);
+            if (has_wildcards(*text)) try {
+                    file = only_file_for(scan, *text, warn);
+                } catch (const Error& error) {
+                    complaints.add(fmt::format("{}; expected {} of '{}'", error.sentence(), what, scan.file.string()));
+                    take(scan, file);
+                    continue;
+                }
             if (std::optional<std::string> complaint = missing(file, what, scan)) complaints.add(std::move(*complaint));
             take(scan, file);
         }
-        complaints.report(what, [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); });
+        complaints.report(what, warn);
     }
 
     void truth(const YamlEntry& entry, std::span<BatchScan> scans) {

@@ -55,7 +55,7 @@ TEST_F(ObjectsBatch, PlaceholdersAreTheObjectsNameAndItsFolder) {
     folder_.write("o/b/truth.stl", "x");
     folder_.write("o/a/n-3.txt", "x");
     EXPECT_THAT(
-        scans("[{path: o/*/*.ply, by: folder, truth: \"{folder}/truth.stl\", frame: \"{stem}\", "
+        scans("[{path: o/*/*.ply, by: folder, truth: \"{folder}/tr*.stl\", frame: \"{stem}\", "
               "in: {more: \"{folder}/v*.ply\"}, set: {n: \"{folder}/n-*.txt\", m: \"x-{stem}\", k: \"{other}\"}}]"),
         ElementsAre(AllOf(HasSubstr("o/b' has no file for `n`: no file matches"))));
     const BatchScan& a = batch_.scans[0];
