@@ -37,7 +37,7 @@ bool may_hold_several_views(const fs::path& file) {
 
 bool is_poses_file(const fs::path& file) {
     const std::string name = file.filename().string();
-    return name.ends_with(".conf") || name == "poses.json" || name.ends_with(".poses.json");
+    return name.ends_with(".conf") || name.ends_with("poses.json");
 }
 
 /// The path with the folder's name at its end: "objects/bunny" for objects/bunny/, an absolute path for `.` and `..`.

@@ -3,8 +3,8 @@
 /// Objects of many views. An object is a folder; files in it are its views, in the order of their names. Its name is
 /// that of the folder. Records know it by the folder's path, as they know a scan by the path of its file.
 ///
-/// The poses of the views are a file beside them: `*.conf`, `poses.json` or `*.poses.json`. A workflow takes them as
-/// its parameter `poses`.
+/// The poses of the views are a file beside them, `*.conf` or `*poses.json`. A workflow takes them as its parameter
+/// `poses`.
 
 #include <filesystem>
 #include <span>

@@ -96,6 +96,18 @@ TEST_F(ObjectsBatch, EntriesThatContradictThemselves_AreRefused) {
                 ElementsAre(AllOf(StartsWith("b:3:"), HasSubstr("no workflow has a parameter 'poses'"))));
 }
 
+TEST_F(ObjectsBatch, FilesOfPosesBesideTheViews_GoByTheirNames) {
+    const ObjectFolder object{folder_ / "o/b", {folder_ / "o/b/v1.ply"}};
+    folder_.write("o/b/v1.ply.json", "x");
+    EXPECT_EQ(poses_beside(object).file, "");
+    folder_.write("o/b/made-poses.json", R"({"scanmill": 1, "poses": [{"scan": "v1", "rotation": [0, 0, 0, 1],
+                                             "translation": [0, 0, 0]}]})");
+    EXPECT_EQ(poses_beside(object).file, folder_ / "o/b/made-poses.json");
+    EXPECT_EQ(poses_beside(object).refusal, "");
+    folder_.write("o/b/other.conf", "x");
+    EXPECT_THAT(poses_beside(object).refusal, AllOf(HasSubstr("made-poses.json"), HasSubstr("other.conf")));
+}
+
 TEST_F(ObjectsBatch, PosesOfCompressedViewsAndOfOthers_AreToldApart) {
     const std::filesystem::path file = folder_.write("p.conf", "bmesh v1.ply 0 0 0 0 0 0 1\nbmesh v2 0 0 0 0 0 0 1\n");
     EXPECT_EQ(poses_in(file, {"o/a", {"o/a/v1.ply.gz", "o/a/v2.ply"}}).refusal, "");
