@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -11,6 +12,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/batch/batch.hpp"
+#include "scanmill/batch/objects.hpp"
 #include "scanmill/graph/graph.hpp"
 #include "scanmill/workflow/ready.hpp"
 
@@ -132,7 +134,40 @@ struct CheckedFile {
     std::vector<Diagnostics> diagnostics;
     std::vector<std::shared_ptr<const Plan>> plans;
     std::string summary;
+    std::string objects{};  ///< of a batch: a line for each object, its views and their poses
 };
+
+/// "3 scans", "12 objects of 72 view files", or both.
+std::string scans_text(const std::vector<BatchScan>& scans) {
+    std::size_t objects = 0, views = 0;
+    for (const BatchScan& scan : scans) {
+        objects += scan.is_object();
+        views += scan.views.size();
+    }
+    const std::string single = count_text(scans.size() - objects, "scan", "scans");
+    if (objects == 0) return single;
+    const std::string folders =
+        fmt::format("{} of {}", count_text(objects, "object", "objects"), count_text(views, "view file", "view files"));
+    return objects == scans.size() ? folders : single + ", " + folders;
+}
+
+/// A line for each object, its views, and the poses that the plans of `checked` use.
+std::string objects_text(const CheckedBatch& checked) {
+    std::map<std::size_t, std::string> poses;
+    for (const BatchPart& part : checked.parts)
+        for (const std::size_t scan : part.scans)
+            if (takes_poses(part.plan->workflow)) poses[scan] = checked.batch.scans[scan].poses_file.string();
+    std::string text;
+    for (std::size_t scan = 0; scan < checked.batch.scans.size(); ++scan) {
+        const BatchScan& object = checked.batch.scans[scan];
+        if (!object.is_object()) continue;
+        text += fmt::format("object {}: {} in {}", object.name(),
+                            count_text(object.views.size(), "view file", "view files"), object.file.string());
+        if (const std::string& file = poses[scan]; !file.empty()) text += fmt::format(", poses in {}", file);
+        text += "\n";
+    }
+    return text;
+}
 
 CheckedFile check_file(const std::string& file_or_name, const FilterLibrary& library, const Settings& settings,
                        const Warn& warn) {
@@ -149,11 +184,14 @@ CheckedFile check_file(const std::string& file_or_name, const FilterLibrary& lib
     const CheckedBatch checked = check_batch(text, file, library);
     CheckedFile result{checked.diagnostics,
                        {},
-                       fmt::format("{}, {}, {}, {}", count_text(checked.batch.scans.size(), "scan", "scans"),
+                       fmt::format("{}, {}, {}, {}", scans_text(checked.batch.scans),
                                    count_text(checked.batch.workflows.size(), "workflow", "workflows"),
                                    count_text(checked.variants(), "variant", "variants"),
-                                   count_text(checked.cells(), "cell", "cells"))};
-    for (const BatchPart& part : checked.parts) result.plans.push_back(part.plan);
+                                   count_text(checked.cells(), "cell", "cells")),
+                       objects_text(checked)};
+    std::set<std::string> shapes;  // objects with poses of their own have one plan
+    for (const BatchPart& part : checked.parts)
+        if (part.shape.empty() || shapes.insert(part.shape).second) result.plans.push_back(part.plan);
     return result;
 }
 
@@ -186,6 +224,7 @@ int check(const CheckOptions& options) {
                 continue;
             }
             if (!options.plan && !options.json) fmt::print("{}: ok, {}\n", file, checked.summary);
+            if (options.plan && !options.json && options.format == "text") fmt::print("{}", checked.objects);
             for (std::size_t i = 0; options.plan && i < checked.plans.size(); ++i) {
                 const Plan& plan = *checked.plans[i];
                 if (options.json)

@@ -21,9 +21,11 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/batch/choice.hpp"
+#include "scanmill/batch/objects.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
+#include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
@@ -312,27 +314,59 @@ void add_scans(std::vector<ScanFile>& scans, const std::string& input,
     }
 }
 
+/// `refusal`: why the object must not be read; empty if it may be read.
+ScanFile scan_file(const ObjectFolder& object, const std::string& refusal) {
+    ScanFile file(object.folder);
+    for (const std::filesystem::path& path : object.views) {
+        file.views.emplace_back(path);
+        file.views.back().refusal = refusal;
+    }
+    return file;
+}
+
 int run_workflow(const RunOptions& options) {
     Execution execution(options.execute);
     const std::string workflow = workflow_file(options.workflow, print_warning);
     const std::string text = read_workflow_file(workflow);
     if (is_batch(text))
         throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + options.workflow);
-    const CheckedWorkflow checked =
-        check_workflow(workflow, text, execution.library(), parse_settings(options.settings), options.has_picture);
+    Settings settings = parse_settings(options.settings);
+    CheckedWorkflow checked = check_workflow(workflow, text, execution.library(), settings, options.has_picture);
     if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
     RunRequest request = options.request;
-    for (const std::string& scan : options.scans) request.scans.emplace_back(scan);
+    std::vector<ObjectFolder> objects;
+    for (const std::string& scan : options.scans)
+        if (std::error_code ignored; takes_views(checked.plan.workflow) && std::filesystem::is_directory(scan, ignored))
+            objects.push_back(object_in(scan));
+        else
+            request.scans.emplace_back(scan);
     request.inputs = parse_inputs(options.inputs);
     if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input too
         if (auto first = request.inputs.extract(checked.plan.workflow.inputs.front().name))
             add_scans(request.scans, first.key(), first.mapped());
     request.output_folder = options.execute.session.output_folder;
     request.seed = options.execute.seed;
+    if (!objects.empty() && !request.scans.empty())
+        throw Error("'{}' is a folder and '{}' is a file; a folder is an object, and files are the views of one object",
+                    objects.front().folder.string(), request.scans.front().path.string())
+            .hint("name only folders, or only files");
+    const auto plan = std::make_shared<const Plan>(std::move(checked.plan));
+    std::vector<GraphPart> parts;
+    if (objects.empty()) parts.push_back({plan, request});
+    const bool finds_poses = takes_poses(plan->workflow) && !settings.contains(poses_parameter);
+    for (const ObjectFolder& object : objects) {
+        const ObjectPoses poses = finds_poses ? poses_beside(object) : ObjectPoses();
+        GraphPart& part = parts.emplace_back(GraphPart{plan, request});
+        part.request.scans = {scan_file(object, poses.refusal)};
+        if (poses.file.empty()) continue;
+        settings.insert_or_assign(poses_parameter, text_setting(poses.file.string(), {}));
+        part.plan = std::make_shared<const Plan>(
+            check_workflow(workflow, text, execution.library(), settings, options.has_picture).plan);
+    }
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
-    RunGraph graph = make_graph(checked.plan, execution.library(), request, hash);
-    return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
+    RunGraph graph = make_graph(parts, execution.library(), hash);
+    return execution.run({workflow_name(*plan), workflow, std::move(graph), {}}, false);
 }
 
 /// The scan with the files that it declares for the plan's other inputs.
@@ -341,8 +375,16 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     file.unit = scan.unit;
     file.frame = scan.frame;
     file.pose = scan.pose;
-    file.pose_refusal = scan.pose_refusal;
+    file.refusal = scan.refusal;
     file.invalid = scan.invalid;
+    for (const std::filesystem::path& path : scan.views) {
+        ScanFile view(path);
+        view.unit = scan.unit;
+        view.frame = with_stem(scan.frame, path);
+        view.refusal = scan.refusal;
+        view.invalid = scan.invalid;
+        file.views.push_back(std::move(view));
+    }
     for (const WorkflowInput& input : plan.workflow.inputs) {
         const auto own = scan.inputs.find(input.name);
         if (own == scan.inputs.end()) continue;
@@ -368,7 +410,9 @@ RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteO
 std::vector<std::filesystem::path> files_of(const Batch& batch) {
     std::vector<std::filesystem::path> files{batch.file};
     for (const BatchScan& scan : batch.scans) {
-        files.push_back(scan.file);
+        if (!scan.is_object()) files.push_back(scan.file);
+        files.insert(files.end(), scan.views.begin(), scan.views.end());
+        if (!scan.poses_file.empty()) files.push_back(scan.poses_file);
         if (!scan.pose_file.empty()) files.push_back(scan.pose_file);
         files.insert(files.end(), scan.truth.files.begin(), scan.truth.files.end());
         for (const auto& [name, input] : scan.inputs) files.insert(files.end(), input.files.begin(), input.files.end());
@@ -408,7 +452,8 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
                    "The workflow file, or the name of a ready one, such as bernardini-1997")
         ->required();
     run.add_option("SCAN", options.scans,
-                   "Files for the workflow's first input: one run each, or one run for all if that input is a list");
+                   "Files for the workflow's first input: one run each, or one run for all if that input is a list. "
+                   "For a list also folders: one run each, over the views in the folder");
     const auto add_list = [&run = run](const char* name, std::vector<std::string>& values, const char* help) {
         run.add_option(name, values, help)->take_all()->allow_extra_args(false);
     };

@@ -39,7 +39,9 @@ void require_sound(const CheckedBatch& checked) {
         require_law(std::ranges::is_sorted(part.scans) && part.scans.back() < batch.scans.size(), "scans out of order");
     }
     for (const BatchScan& scan : batch.scans) {
-        require_law(std::filesystem::is_regular_file(scan.file), "a scan that is not there");
+        if (!scan.is_object()) require_law(std::filesystem::is_regular_file(scan.file), "a scan that is not there");
+        for (const std::filesystem::path& view : scan.views)
+            require_law(std::filesystem::is_regular_file(view), "a view that is not there");
         if (!scan.pose) continue;
         const Eigen::Matrix3d& rotation = scan.pose->rotation;
         require_law((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-11, "no rotation");

@@ -10,6 +10,7 @@
 #include "scanmill/base/hash.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/batch/check_gate.hpp"
+#include "scanmill/batch/objects.hpp"
 #include "scanmill/batch/scans.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/formats/common/format.hpp"
@@ -280,6 +281,7 @@ public:
             for (const BatchScan& scan : batch.scans) report_undeclared(scan.settings);
             report_unknown_inputs();
             report_idle_rules();
+            report_idle_poses();
         }
         report_idle_truths();
         const bool is_sound = !unreadable_ && std::ranges::none_of(checked_.diagnostics, &Diagnostics::has_errors);
@@ -287,6 +289,10 @@ public:
         if (is_sound && measuring_) report_unmeasured();
         if (is_sound && batch.gate && !checked_.parts.empty() && batch.measure.has_value() == (measuring_ != nullptr))
             check_gate(batch, checked_.parts, library_, batch_diagnostics_);
+        if (refused_ > most_refused)
+            batch_diagnostics_.warning({},
+                                       fmt::format("for {}, the poses are wrong, too",
+                                                   count_text(refused_ - most_refused, "more object", "more objects")));
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
             batch_diagnostics_.error({}, "has {} cells (scans times variants); expected at most {}: split the batch",
@@ -301,8 +307,9 @@ public:
     }
 
 private:
-    static bool takes_list(const Workflow& workflow) {
-        return !workflow.inputs.empty() && workflow.inputs.front().list;
+    /// Whether the workflow takes the scan in one run with others.
+    bool joins(const Workflow& workflow, std::size_t scan) const {
+        return takes_views(workflow) && !checked_.batch.scans[scan].is_object();
     }
     static std::span<const WorkflowInput> further_inputs(const Workflow& workflow) {
         return std::span(workflow.inputs).subspan(std::min<std::size_t>(1, workflow.inputs.size()));
@@ -425,6 +432,7 @@ private:
     /// Scans with equal values. If the workflow takes one scan per run, either all of them have a truth or none has.
     struct Group {
         Settings settings;
+        std::string shape;  ///< BatchPart::shape
         std::vector<std::size_t> scans;
     };
 
@@ -436,23 +444,73 @@ private:
             if (workflow.inputs.empty()) checked_.parts.push_back({std::move(planned), index, {}});
             return;
         }
+        if (refuses_objects(workflow, batch.workflows[index])) return;
         std::vector<Group> groups;
         std::map<std::string, std::size_t> group_of_key;
         for (std::size_t scan = 0; scan < batch.scans.size(); ++scan) {
             Settings settings = settings_for(workflow, batch.settings, batch.scans[scan].settings);
-            const bool is_measured = !takes_list(workflow) && has_truth(scan);
-            const auto [group, is_new] =
-                group_of_key.emplace(key_of(settings) + (is_measured ? " measured" : ""), groups.size());
-            if (is_new) groups.push_back({std::move(settings), {}});
+            const bool is_joined = joins(workflow, scan), is_measured = !is_joined && has_truth(scan);
+            const std::string manner =
+                fmt::format("{}{}{}", index, is_joined ? " joined" : "", is_measured ? " measured" : "");
+            const std::string shape = key_of(settings) + manner;
+            if (takes_poses(workflow)) add_poses(checked_.batch.scans[scan], settings);
+            const auto [group, is_new] = group_of_key.emplace(key_of(settings) + manner, groups.size());
+            if (is_new) groups.push_back({std::move(settings), shape, {}});
             groups[group->second].scans.push_back(scan);
         }
         for (Group& group : groups) {
-            if (takes_list(workflow)) require_agreement(workflow, batch.workflows[index], group.scans);
-            const bool is_measured = measuring_ && (takes_list(workflow) ? agree_on_truth(batch.workflows[index], group)
-                                                                         : has_truth(group.scans.front()));
-            checked_.parts.push_back(
-                {plan(workflow, group.settings, is_measured, diagnostics), index, std::move(group.scans)});
+            const bool is_joined = joins(workflow, group.scans.front());
+            if (is_joined) require_agreement(workflow, batch.workflows[index], group.scans);
+            const bool is_measured = measuring_ && (is_joined ? agree_on_truth(batch.workflows[index], group)
+                                                              : has_truth(group.scans.front()));
+            checked_.parts.push_back({plan(workflow, group.settings, is_measured, diagnostics),
+                                      index,
+                                      std::move(group.scans),
+                                      {},
+                                      std::move(group.shape)});
         }
+    }
+
+    /// Reports objects if the workflow takes one scan per run.
+    bool refuses_objects(const Workflow& workflow, const BatchWorkflow& listed) {
+        const std::vector<BatchScan>& scans = checked_.batch.scans;
+        const auto object = std::ranges::find_if(scans, &BatchScan::is_object);
+        if (takes_views(workflow) || object == scans.end()) return false;
+        batch_diagnostics_.error(
+            listed.position,
+            "'{}' takes one scan per run, and the object '{}' has {}; expected a workflow whose first input has "
+            "`list: true`, or scans without `by: folder`",
+            listed.file.string(), object->name(), count_text(object->views.size(), "view", "views"));
+        return true;
+    }
+
+    /// Adds the object's poses to the settings. Poses beside the views give way to a setting, which may be `none`.
+    void add_poses(BatchScan& scan, Settings& settings) {
+        const bool is_found = scan.poses_position.line == 0;
+        if (is_found && settings.contains(poses_parameter)) {
+            scan.poses_file.clear();
+            return;
+        }
+        if (!scan.poses_refusal.empty() && scan.refusal.empty()) {
+            scan.refusal = scan.poses_refusal;
+            if (++refused_ <= most_refused)
+                batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.refusal);
+        }
+        if (scan.poses_file.empty()) return;
+        const fs::path file = path_from(fs::path(checked_.batch.file).parent_path(), scan.poses_file);
+        settings.insert_or_assign(poses_parameter, text_setting(file.string(), scan.position));
+    }
+
+    /// Reports poses if no workflow takes them. Scans of one entry share a position, which is reported once.
+    void report_idle_poses() {
+        std::set<std::pair<int, int>> reported;
+        for (const BatchScan& scan : checked_.batch.scans)
+            if (const Position at = scan.poses_position;
+                at.line > 0 && !declared_.contains(poses_parameter) && reported.emplace(at.line, at.column).second)
+                batch_diagnostics_.error(at,
+                                         "no workflow has a parameter '{}'; a workflow with an input for poses takes "
+                                         "them by `in: {{NAME: FILE}}`",
+                                         poses_parameter);
     }
 
     bool has_truth(std::size_t scan) const { return !checked_.batch.scans[scan].truth.files.empty(); }
@@ -664,13 +722,13 @@ private:
             const Plan& plan = *checked_.parts[part].plan;
             const Position of_workflow = checked_.batch.workflows[checked_.parts[part].workflow].position;
             std::vector<const BatchScan*> scans;  // nullptr: one run with all scans, or without a scan
-            if (!plan.workflow.inputs.empty() && !takes_list(plan.workflow))
+            if (checked_.has_run_per_scan(checked_.parts[part]))
                 for (const std::size_t scan : checked_.parts[part].scans) scans.push_back(&checked_.batch.scans[scan]);
             else
                 scans.push_back(nullptr);
             for (const BatchScan* scan : scans)
                 for (const PlannedVariant& variant : plan.variants) try {
-                        add_outputs(files, plan, variant, scan ? scan->file : fs::path(), std::to_string(part));
+                        add_outputs(files, plan, variant, scan, std::to_string(part));
                     } catch (const Error& error) {
                         constexpr std::size_t most = 10;
                         if (++shared <= most)
@@ -681,13 +739,13 @@ private:
         }
     }
 
-    /// Adds the outputs of a cell. `scan` is empty if the run of the cell takes all scans or no scan. Equal values of
+    /// Adds the outputs of a cell. `scan` is null if the run of the cell takes all scans or no scan. Equal values of
     /// one scan may share a file.
-    void add_outputs(OutputNames& files, const Plan& plan, const PlannedVariant& variant, const fs::path& scan,
+    void add_outputs(OutputNames& files, const Plan& plan, const PlannedVariant& variant, const BatchScan* scan,
                      const std::string& part) const {
-        const std::string workflow = workflow_name(plan), name = scan.empty() ? workflow : scan.string();
-        const TemplateValues values{scan.empty() ? workflow : stem_of(scan), variant.name, workflow,
-                                    scan.empty() ? workflow : folder_name(scan)};
+        const std::string workflow = workflow_name(plan), name = scan ? scan->file.string() : workflow;
+        const TemplateValues values{scan ? scan->name() : workflow, variant.name, workflow,
+                                    scan ? folder_name(scan->file) : workflow};
         const std::string writer = cell_text(name, variant.name, checked_.parts.size() > 1 ? workflow : "");
         for (const PlannedOutput& output : variant.outputs) {
             const std::string source = output.source.step ? plan.steps[*output.source.step].structure_key
@@ -706,6 +764,8 @@ private:
     std::set<std::string> declared_;
     std::set<std::string> first_inputs_, further_inputs_;  // names of inputs
     bool takes_scans_ = false, takes_points_ = false;
+    static constexpr std::size_t most_refused = 10;
+    std::size_t refused_ = 0;  // objects whose poses are refused; warnings name the first
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown
 };
 
@@ -715,6 +775,8 @@ Batch parse_batch(const std::string& text, Diagnostics& diagnostics) {
     const YamlNode root = parse_yaml(text, diagnostics);
     return BatchParser(diagnostics).batch(root);
 }
+
+std::string BatchScan::name() const { return is_object() ? file.filename().string() : stem_of(file); }
 
 std::vector<std::string> measuring_filters(const FilterLibrary& library) {
     std::vector<std::string> names = library.names();
@@ -744,11 +806,14 @@ std::size_t CheckedBatch::variants() const {
 
 std::size_t CheckedBatch::cells() const {
     std::size_t count = 0;
-    for (const BatchPart& part : parts) {
-        const std::vector<WorkflowInput>& inputs = part.plan->workflow.inputs;
-        count += part.plan->variants.size() * (inputs.empty() || inputs.front().list ? 1 : part.scans.size());
-    }
+    for (const BatchPart& part : parts)
+        count += part.plan->variants.size() * (has_run_per_scan(part) ? part.scans.size() : 1);
     return count;
+}
+
+bool CheckedBatch::has_run_per_scan(const BatchPart& part) const {
+    if (part.scans.empty()) return false;
+    return !takes_views(part.plan->workflow) || batch.scans[part.scans.front()].is_object();
 }
 
 CheckedBatch check_batch(const std::string& text, const std::string& file, const FilterLibrary& library) {

@@ -49,19 +49,32 @@ struct BatchInput {
     }
 };
 
+/// A scan, or an object of several views.
 struct BatchScan {
-    std::filesystem::path file;
+    std::filesystem::path file;  ///< of an object, its folder
+    std::vector<std::filesystem::path> views;  ///< of an object, sorted by name; empty for a scan
     Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;  ///< with {stem} replaced; empty: from the workflow or the file
+    /// For a scan with {stem} replaced; for an object as written, to be replaced for each view. Empty: from the
+    /// workflow or the file.
+    std::string frame;
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
-    std::string pose_refusal;  ///< why the pose file has no pose of the scan, whose cells fail; empty: it has one
+    std::string refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run
+    /// The poses of an object's views: those that the batch names, else those beside the views. check_batch() uses the
+    /// latter only where a workflow takes poses and no setting gives them.
+    std::filesystem::path poses_file;
+    std::string poses_refusal;  ///< why the poses beside the views cannot be used
+    Position poses_position;  ///< position of the key `poses`; line 0: poses beside the views
     BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
     Position invalid_position;  ///< position of the key `invalid`
     Settings settings;  ///< values of this scan, which override Batch::settings
+
+    bool is_object() const { return !views.empty(); }
+    /// The scan's stem, or the object's name.
+    std::string name() const;
 };
 
 struct BatchWorkflow {
@@ -116,13 +129,15 @@ struct BatchPart {
     std::size_t workflow = 0;  ///< index into Batch::workflows
     std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; empty for a workflow without inputs
     std::vector<std::string> only{};  ///< names of the variants to run; empty: all
+    std::string shape{};  ///< equal for parts whose plans differ at most in the poses of their objects
 };
 
 struct CheckedBatch {
     Batch batch;
-    /// Sorted by workflow, then by the first scan. A workflow whose first input is a list takes all scans of a part in
-    /// one run. These scans must have the same files for the other inputs. Results of the run are measured if the scans
-    /// have the same truth. A workflow without inputs runs once.
+    /// Sorted by workflow, then by the first scan. All scans of a part are objects, or none is. A workflow whose first
+    /// input is a list takes an object in one run, and all scans of a part in one run. These scans must have the same
+    /// files for the other inputs. Results of the run are measured if the scans have the same truth. A workflow without
+    /// inputs runs once.
     std::vector<BatchPart> parts;
     /// Errors and warnings about the batch file, then about each readable workflow. A workflow is checked with every
     /// set of values with which it runs.
@@ -132,9 +147,11 @@ struct CheckedBatch {
     bool has_errors() const;
     /// The number of variants of all workflows. A variant in several parts of a workflow counts once.
     std::size_t variants() const;
-    /// The number of cells: for every part, its variants times its runs. A run takes one scan, a list of scans, or no
-    /// scan.
+    /// The number of cells: for every part, its variants times its runs. A run takes one scan, one object, a list of
+    /// scans, or no scan.
     std::size_t cells() const;
+    /// Whether the part has one run for every scan or object.
+    bool has_run_per_scan(const BatchPart& part) const;
 };
 
 /// Checks the batch in `text`, the content of `file`. A scan's values are those of the batch's `set` and of its own

@@ -37,7 +37,9 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 void choose(CheckedBatch& checked, const BatchChoice& choice) {
     const fs::path folder = fs::path(checked.batch.file).parent_path();
     const auto is_named = [&](const BatchScan& scan, const std::string& name) {
-        return scan.file == name || scan.file.lexically_normal() == (folder / name).lexically_normal();
+        fs::path path = (folder / name).lexically_normal();
+        if (!path.has_filename()) path = path.parent_path();  // an object's folder with a slash at its end
+        return scan.file == name || scan.file.lexically_normal() == path;
     };
     std::vector<std::string> scans, workflows, variants;
     for (const BatchScan& scan : checked.batch.scans) scans.push_back(scan.file.string());

@@ -10,6 +10,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/batch/objects.hpp"
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/poses/poses.hpp"
 #include "scanmill/io/mapped_file.hpp"
@@ -292,9 +293,17 @@ private:
             return;
         }
         const auto scans = [this, first = scans_.size()] { return std::span(scans_).subspan(first); };
+        bool by_folder = false;
+        const auto by = [&](const YamlEntry& found) {
+            by_folder = found.value.is_scalar() && found.value.text == "folder";
+            if (!by_folder)
+                diagnostics_.error(found.value.position,
+                                   "found {}; expected `by: folder`, or no `by` for one scan per file",
+                                   found.value.described());
+        };
         const auto path = [&](const YamlEntry& found) {
             if (const auto text = require_text(found.value, "a path, as scans/*.ply", diagnostics_))
-                find_files(*text, found.value.position);
+                find_files(*text, found.value.position, by_folder);
         };
         const auto unit = [&](const YamlEntry& found) {
             LengthUnit declared = LengthUnit::unknown;
@@ -305,7 +314,7 @@ private:
             std::string text;
             text_into(text, diagnostics_)(found);
             check_stem_template(text, "the frame", found.value.position, diagnostics_);
-            for (BatchScan& scan : scans()) scan.frame = with_stem(text, scan.file);
+            for (BatchScan& scan : scans()) scan.frame = scan.is_object() ? text : with_stem(text, scan.file);
         };
         const auto invalid = [&](const YamlEntry& found) {
             InvalidRows rule = InvalidRows::by_format;
@@ -317,36 +326,71 @@ private:
         };
         const auto set = [&](const YamlEntry& found) {
             const Settings settings = parse_settings(found.value, diagnostics_);
-            for (BatchScan& scan : scans()) scan.settings = settings;
+            for (BatchScan& scan : scans()) scan.settings = settings_of(scan, settings);
         };
         read_mapping(node, "a scan",
-                     {{"path", path, fmt::format("the scan has no path; expected {}", expected)},
+                     {{"by", by},
+                      {"path", path, fmt::format("the scan has no path; expected {}", expected)},
                       {"unit", unit},
                       {"frame", frame},
                       {"invalid", invalid},
                       {"pose", [&](const YamlEntry& found) { pose(found, scans()); }},
+                      {"poses", [&](const YamlEntry& found) { poses(found, scans()); }},
                       {"truth", [&](const YamlEntry& found) { truth(found, scans()); }},
                       {"in", [&](const YamlEntry& found) { inputs(found, scans()); }},
                       {"set", set}},
                      diagnostics_);
+        for (const BatchScan& scan : scans())
+            if (const auto twice = scan.settings.find(poses_parameter);
+                twice != scan.settings.end() && scan.poses_position.line > 0)
+                return diagnostics_.error(twice->second.position, "`set` gives poses, and so does `poses` in line {}",
+                                          scan.poses_position.line);
     }
 
-    void find_files(const std::string& path, Position position) {
+    void find_files(const std::string& path, Position position, bool by_folder = false) {
         try {
             const auto warn = [&](std::string sentence) { diagnostics_.warning(position, std::move(sentence)); };
-            for (fs::path& file : scan_files(folder_, path, warn)) {
-                const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), position.line);
-                if (is_new) {
-                    scans_.emplace_back();
-                    scans_.back().file = without_detours(file);
-                    scans_.back().position = position;
-                } else {
-                    diagnostics_.error(position, "'{}' is listed twice; line {} lists it too", file.string(),
-                                       earlier->second);
-                }
-            }
+            std::vector<fs::path> files;
+            for (const fs::path& file : scan_files(folder_, path, warn))
+                if (is_new(file, position)) files.push_back(without_detours(file));
+            if (by_folder) return add_objects(objects_of(files), position);
+            for (fs::path& file : files) add_scan(std::move(file), position);
         } catch (const Error& error) {
             diagnostics_.error(position, error.sentence());
+        }
+    }
+
+    /// Whether no entry has listed the file or the folder before. If one has, reports it.
+    bool is_new(const fs::path& path, Position position, std::string_view way_out = "") {
+        const auto [earlier, is_new] = line_of_.emplace(fs::absolute(path).lexically_normal(), position.line);
+        if (!is_new)
+            diagnostics_.error(position, "'{}' is listed twice; line {} lists it too{}", path.string(), earlier->second,
+                               way_out);
+        return is_new;
+    }
+
+    BatchScan& add_scan(fs::path file, Position position) {
+        BatchScan& scan = scans_.emplace_back();
+        scan.file = std::move(file);
+        scan.position = position;
+        return scan;
+    }
+
+    void add_objects(const std::vector<ObjectFolder>& objects, Position position) {
+        for (const ObjectFolder& object : objects) {
+            if (object.folder.lexically_normal() == folder_.lexically_normal()) {
+                diagnostics_.error(position,
+                                   "'{}' is in the folder of the batch file; with `by: folder`, every object has a "
+                                   "folder of its own, as in objects/*/*.ply",
+                                   object.views.front().string());
+                continue;
+            }
+            if (!is_new(object.folder, position, "; give all views of an object in one entry")) continue;
+            BatchScan& scan = add_scan(object.folder, position);
+            scan.views = object.views;
+            const ObjectPoses beside = poses_beside(object);
+            scan.poses_file = beside.file;
+            scan.poses_refusal = beside.refusal;
         }
     }
 
@@ -381,8 +425,15 @@ private:
         return diagnostics_.errors() > before ? std::nullopt : text;
     }
 
+    /// The value of `stem` or `folder`. For an object, the folder is a path, which counts from the batch file.
+    std::string value_of(const BatchScan& scan, const std::string& placeholder) const {
+        if (placeholder != "folder") return scan.name();
+        return scan.is_object() ? path_from(folder_, scan.file).string() : folder_name(scan.file);
+    }
+
     fs::path file_for(const BatchScan& scan, const std::string& path_template) const {
-        return folder_ / with_stem_and_folder(path_template, scan.file);
+        return folder_ /
+               with_placeholders(path_template, [&](const std::string& each) { return value_of(scan, each); });
     }
 
     /// The files that match a path with wildcards. Wildcards in the names of the scan and its folder match themselves.
@@ -390,7 +441,7 @@ private:
                                     const OnWarning& warn) const {
         const std::string pattern = with_placeholders(path_template, [&](const std::string& placeholder) {
             std::string literal;
-            for (const char each : placeholder == "folder" ? folder_name(scan.file) : stem_of(scan.file))
+            for (const char each : value_of(scan, placeholder))
                 literal += has_wildcards({each}) ? fmt::format("[{}]", each) : std::string(1, each);
             return literal;
         });
@@ -405,20 +456,28 @@ private:
         return std::nullopt;
     }
 
-    /// Calls `take` with every scan and its file. A missing file is only a warning, because it only fails the cells
-    /// that read it.
+    /// Calls `take` with every scan and its file, the only match of a path with wildcards. A missing file is only a
+    /// warning, because it only fails the cells that read it.
     template <class Take>
     void take_files(const YamlNode& node, const std::string& what, std::string_view forms, std::span<BatchScan> scans,
                     const Take& take) {
         const auto text = path_template(node, what, forms);
         if (!text) return;
         Complaints complaints;
+        const auto warn = [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); };
         for (BatchScan& scan : scans) {
-            const fs::path file = file_for(scan, *text);
+            fs::path file = file_for(scan, *text);
+            if (has_wildcards(*text)) try {
+                    file = only_file_for(scan, *text, warn);
+                } catch (const Error& error) {
+                    complaints.add(fmt::format("{}; expected {} of '{}'", error.sentence(), what, scan.file.string()));
+                    take(scan, file);
+                    continue;
+                }
             if (std::optional<std::string> complaint = missing(file, what, scan)) complaints.add(std::move(*complaint));
             take(scan, file);
         }
-        complaints.report(what, [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); });
+        complaints.report(what, warn);
     }
 
     void truth(const YamlEntry& entry, std::span<BatchScan> scans) {
@@ -484,7 +543,68 @@ private:
         }
     }
 
+    /// The only file that matches. Throws Error if none or several do.
+    fs::path only_file_for(const BatchScan& scan, const std::string& path_template, const OnWarning& warn) const {
+        const std::vector<fs::path> files = files_for(scan, path_template, warn);
+        if (files.size() > 1)
+            throw Error("'{}' has {} matches for '{}', such as '{}' and '{}'; expected one file", path_template,
+                        files.size(), scan.file.string(), files[0].string(), files[1].string());
+        return files.front();
+    }
+
+    void poses(const YamlEntry& entry, std::span<BatchScan> scans) {
+        if (scans.empty()) return;  // reported at the path
+        if (!scans.front().is_object()) {
+            diagnostics_.error(entry.position,
+                               "`poses` is for the views of objects, which need `by: folder`; the pose of a scan is "
+                               "`pose: FILE`");
+            return;
+        }
+        const auto path = path_template(entry.value, "the poses", "a file, as \"{folder}/*.conf\"");
+        if (!path) return;
+        const auto warn = [&](std::string text) { diagnostics_.warning(entry.value.position, std::move(text)); };
+        for (BatchScan& scan : scans) {
+            scan.poses_position = entry.value.position;
+            ObjectPoses poses;
+            try {
+                poses = poses_in(only_file_for(scan, *path, warn), {scan.file, scan.views});
+            } catch (const Error& error) {
+                poses.refusal = fmt::format("the object '{}' has no poses: {}", scan.name(), error.sentence());
+            }
+            scan.poses_file = poses.file;
+            scan.poses_refusal = poses.refusal;
+        }
+    }
+
+    /// The settings of a scan. Texts that contain {stem} or {folder} are replaced; such a text with wildcards is the
+    /// only file that matches.
+    Settings settings_of(BatchScan& scan, Settings settings) {
+        for (auto& [name, value] : settings)
+            for (WrittenValue& written : value.values)
+                for (std::string& item : written.literal.items) {
+                    if (item.find("{stem}") == std::string::npos && item.find("{folder}") == std::string::npos)
+                        continue;
+                    const auto warn = [&](std::string text) { diagnostics_.warning(value.position, std::move(text)); };
+                    try {
+                        item = has_wildcards(item) ? path_from(folder_, only_file_for(scan, item, warn)).string()
+                                                   : with_placeholders(item, [&](const std::string& each) {
+                                                         return value_of(scan, each);
+                                                     });
+                    } catch (const Error& error) {
+                        scan.refusal =
+                            fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence());
+                        warn(scan.refusal);
+                    }
+                }
+        return settings;
+    }
+
     void pose(const YamlEntry& entry, std::span<BatchScan> scans) {
+        if (!scans.empty() && scans.front().is_object()) {
+            diagnostics_.error(entry.position,
+                               "`pose` is for single scans; the poses of an object's views are `poses: FILE`");
+            return;
+        }
         if (entry.value.is_sequence() || entry.value.is_map()) {
             const std::optional<RigidTransform> pose = parse_pose(entry.value, diagnostics_);
             for (BatchScan& scan : scans) {
@@ -519,9 +639,10 @@ private:
 
     /// The other scans still run, so this is a warning.
     void refuse(BatchScan& scan, const std::string& reason, const Position& position) {
-        scan.pose_refusal = fmt::format("'{}': the scan '{}' has no pose, because it was refused: {}",
-                                        scan.pose_file.string(), scan.file.filename().string(), reason);
-        diagnostics_.warning(position, scan.pose_refusal);
+        scan.refusal = fmt::format(
+            "'{}': the scan '{}' has no pose, because it was refused: {}; register the views again, or remove the scan",
+            scan.pose_file.string(), scan.file.filename().string(), reason);
+        diagnostics_.warning(position, scan.refusal);
     }
 
     fs::path folder_;
@@ -532,6 +653,12 @@ private:
 };
 
 }  // namespace
+
+fs::path path_from(const fs::path& folder, const fs::path& path) {
+    if (folder.empty() || folder.is_absolute() != path.is_absolute()) return path;
+    const fs::path relative = path.lexically_normal().lexically_relative(folder.lexically_normal());
+    return relative.empty() ? path : relative;
+}
 
 std::vector<BatchScan> parse_scans(const YamlNode& node, const fs::path& folder, Diagnostics& diagnostics) {
     return ScansParser(folder, diagnostics).scans(node);

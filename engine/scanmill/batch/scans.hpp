@@ -25,6 +25,9 @@ namespace scanmill {
 std::vector<std::filesystem::path> scan_files(const std::filesystem::path& folder, const std::string& pattern,
                                               const OnWarning& warn = {});
 
+/// The path as it is written in a batch file in `folder`: relative to the folder, unless only one of them is absolute.
+std::filesystem::path path_from(const std::filesystem::path& folder, const std::filesystem::path& path);
+
 /// Parses the list of scans. Paths count from `folder`. Reports wrong entries and leaves them out.
 std::vector<BatchScan> parse_scans(const YamlNode& node, const std::filesystem::path& folder, Diagnostics& diagnostics);
 

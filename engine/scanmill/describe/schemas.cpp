@@ -133,10 +133,13 @@ const char* const batch_grammar = R"json({
     "required": ["path"], "additionalProperties": false,
     "properties": {
       "path": {"$ref": "#/definitions/scan-path"},
+      "by": {"const": "folder", "description": "Each folder with matching files is one object, and the files are its views."},
       "unit": {"$ref": "#/definitions/unit"},
       "frame": {"$ref": "#/definitions/frame"},
       "invalid": {"$ref": "#/definitions/invalid"},
       "pose": {"$ref": "#/definitions/pose"},
+      "poses": {"type": "string", "minLength": 1,
+                "description": "With by: folder, the file with the poses of the object's views; may contain {stem}, {folder} and wildcards. Without it, the one file *.conf or *poses.json in the object's folder, if there is one."},
       "truth": {"$ref": "#/definitions/truth"},
       "in": {"type": "object", "description": "The scan's files for the workflows' further inputs, by their names. Paths may have wildcards.",
              "additionalProperties": false,

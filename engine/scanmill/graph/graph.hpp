@@ -28,11 +28,14 @@ namespace scanmill {
 struct ScanFile {
     ScanFile(std::filesystem::path file) : path(std::move(file)) {}
 
-    std::filesystem::path path;  ///< a file, or the name of one of its views (see file_view())
+    /// A file, or the name of one of its views (see file_view()). Of an object, its folder.
+    std::filesystem::path path;
+    /// The views of an object, which feed the workflow's first input in one run.
+    std::vector<ScanFile> views;
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
-    std::string pose_refusal;               ///< reason of a refused pose; if not empty, reading fails with it
+    std::string refusal;  ///< why the scan must not be read, as a refused pose; if not empty, reading fails with it
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
@@ -40,8 +43,9 @@ struct ScanFile {
 
 /// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
 struct RunRequest {
-    /// For the first input: one per run, or all in one run if the input is a list. In a list, a file of several views
-    /// stands for all of them; otherwise its views are read as one value.
+    /// For the first input: one per run, or all in one run if the input is a list. Objects need a list, and each is one
+    /// run; all scans are objects or none is. In a list, a file of several views stands for all of them; otherwise its
+    /// views are read as one value.
     std::vector<ScanFile> scans;
     /// Files for inputs other than the first, used in every run. An input that is absent here takes ScanFile::inputs of
     /// the scan, or of the first scan if the first input is a list.
@@ -88,7 +92,7 @@ struct LeafSource {
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
-    std::string pose_refusal{};  ///< reason of a refused pose; if not empty, reading fails with it
+    std::string refusal{};  ///< ScanFile::refusal
     u32 view = 0;  ///< from 1, of a file that holds several; 0: the whole file
 
     /// The name of what is read, for messages and read_file(): the file, or FILE#2.
@@ -100,7 +104,7 @@ constexpr auto fields(const LeafSource*) {
                       field("kind", &R::kind),       field("unit", &R::unit),
                       field("frame", &R::frame),     field("pose", &R::pose),
                       field("invalid", &R::invalid), field("is-streamed", &R::is_streamed),
-                      field("also", &R::also),       field("pose-refusal", &R::pose_refusal),
+                      field("also", &R::also),       field("refusal", &R::refusal),
                       field("view", &R::view)};
 }
 

@@ -61,7 +61,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("kind", name_of(leaf.kind))
         .field("unit", symbol(leaf.unit))
         .field("frame", leaf.frame)
-        .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.pose_refusal)
+        .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.refusal)
         .field("invalid", name_of(leaf.invalid));
     if (leaf.view > 0) key.field("view", std::to_string(leaf.view));
     for (const Kind kind : leaf.also) key.field("also", name_of(kind));
@@ -149,6 +149,7 @@ private:
         output_files_.protect(part.plan->workflow.file);
         for (const ScanFile& scan : part.request.scans) {
             output_files_.protect(scan.path);
+            for (const ScanFile& view : scan.views) output_files_.protect(view.path);
             for (const auto& [name, files] : scan.inputs)
                 for (const ScanFile& file : files) output_files_.protect(file.path);
         }
@@ -169,7 +170,8 @@ private:
         request_ = &part.request;
         graph_.plans.push_back(part.plan);
         const std::vector<WorkflowInput>& inputs = plan_->workflow.inputs;
-        if (inputs.empty() || inputs.front().list) {
+        const bool has_objects = !request_->scans.empty() && !request_->scans.front().views.empty();
+        if (inputs.empty() || (inputs.front().list && !has_objects)) {
             add_cells(scan_index(workflow_name(*plan_)), nullptr);
             return;
         }
@@ -183,7 +185,7 @@ private:
         return found->second;
     }
 
-    /// `file`: the scan; null if the workflow has no scan, or a list of scans.
+    /// `file`: the scan or the object; null if the workflow has no scan, or all scans as a list.
     void add_cells(std::size_t scan, const ScanFile* file) {
         const std::string& scan_name = graph_.scan_names[scan];
         for (std::size_t variant = 0; variant < plan_->variants.size(); ++variant) {
@@ -197,7 +199,10 @@ private:
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
                 add_to(cell, node_of_step[step]);
             }
-            const TemplateValues values{file ? stem_of(file->path) : scan_name, planned.name, workflow_name(*plan_),
+            const std::string name_of_scan = !file                 ? scan_name
+                                             : file->views.empty() ? stem_of(file->path)
+                                                                   : file->path.filename().string();
+            const TemplateValues values{name_of_scan, planned.name, workflow_name(*plan_),
                                         file ? folder_name(file->path) : scan_name};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step))
@@ -277,7 +282,9 @@ private:
         if (source.step) return {node_of_step.at(*source.step)};
         const WorkflowInput& input = plan_->workflow.inputs[source.input];
         if (source.input == 0 && !input.list) return {add_leaf(0, scan, *file, cell)};
-        std::vector<ScanFile> files = source.input == 0 ? request_->scans : files_of(input.name, file);
+        std::vector<ScanFile> files = source.input > 0 ? files_of(input.name, file)
+                                      : file           ? file->views
+                                                       : request_->scans;
         if (input.list) files = views_of(files);
         std::vector<std::size_t> leaves;
         for (const ScanFile& each : files) leaves.push_back(add_leaf(source.input, scan, each, cell));
@@ -320,7 +327,7 @@ private:
         node.leaf.view = source.view;
         const FileContents::Content& content = contents_.of(source.file);
         node.leaf.content = content.hash;
-        node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.pose_refusal;
+        node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.refusal;
         node.leaf.kind = declared.kind;
         node.leaf.also = declared.also;
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
@@ -328,7 +335,7 @@ private:
                                                                  : declared.unit;
         node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
         node.leaf.pose = file.pose;
-        node.leaf.pose_refusal = file.pose_refusal;
+        node.leaf.refusal = file.refusal;
         if (declared.kind == kind_of<PointCloud>() ||
             std::ranges::find(declared.also, kind_of<PointCloud>()) != declared.also.end())
             node.leaf.invalid = file.invalid != InvalidRows::by_format        ? file.invalid

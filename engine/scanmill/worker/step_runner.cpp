@@ -242,8 +242,7 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 }
 
 Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped) {
-    if (!leaf.pose_refusal.empty())
-        throw Error("{}", leaf.pose_refusal).hint("register the views again, or remove the scan from the batch");
+    if (!leaf.refusal.empty()) throw Error("{}", leaf.refusal);
     const ReadOptions options = reading(leaf, on_warning);
     Value value;
     LoadedFile loaded = leaf.also.empty() && leaf.kind == kind_of<TriangleMesh>()

@@ -140,12 +140,6 @@ void check_path_template(const std::string& text, std::string_view what, Positio
     check_placeholders(text, what, placeholders, position, diagnostics);
 }
 
-std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file) {
-    return with_placeholders(text, [&](const std::string& placeholder) {
-        return placeholder == "folder" ? folder_name(file) : stem_of(file);
-    });
-}
-
 std::string folder_name(const std::filesystem::path& file) {
     std::error_code gone;
     const std::string name = std::filesystem::absolute(file, gone).lexically_normal().parent_path().filename().string();

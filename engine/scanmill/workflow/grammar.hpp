@@ -65,7 +65,6 @@ std::string with_stem(const std::string& text, const std::filesystem::path& file
 
 /// The paths of poses, truths and inputs of a list of scans may contain {stem} and {folder}; see folder_name().
 void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
-std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file);
 
 /// The name of the folder that contains the file; "root" for the root folder.
 std::string folder_name(const std::filesystem::path& file);

@@ -285,9 +285,9 @@ TEST_F(BatchScans, RefusedScan_IsAWarning_AndHasItsReason) {
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: p.json}]"),
                 ElementsAre(AllOf(StartsWith("b:3:35: warning: "), HasSubstr("'b.ply'"), HasSubstr("no-overlap"))));
     EXPECT_TRUE(batch_.scans[0].pose);
-    EXPECT_EQ(batch_.scans[0].pose_refusal, "");
+    EXPECT_EQ(batch_.scans[0].refusal, "");
     EXPECT_FALSE(batch_.scans[1].pose);
-    EXPECT_THAT(batch_.scans[1].pose_refusal, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+    EXPECT_THAT(batch_.scans[1].refusal, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
 }
 
 TEST_F(BatchScans, MatrixAndQuaternion_AreTheSameMotion) {
