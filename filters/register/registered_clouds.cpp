@@ -121,10 +121,9 @@ std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::
     }
     const auto warn = [&](const std::vector<std::string>& which, const char* what) {
         if (which.empty()) return;
-        context.warn(
-            fmt::format("{} without a column `approach` or `normal`: {} ({})",
-                        count_text(which.size(), "view is", "views are"), what,
-                        enumerated(std::span<const std::string>(which).first(std::min(which.size(), most_named)))));
+        context.warn(fmt::format(
+            "{} without a column `approach` or `normal`: {} ({})", count_text(which.size(), "view is", "views are"),
+            what, enumerated(std::span<const std::string>(which).first(std::min(which.size(), most_named)))));
     };
     warn(assumed, "the scanner is assumed on the side of +z");
     warn(estimated, "the side of the scanner is estimated, because +z would see much of the surface edge-on");

@@ -72,8 +72,8 @@ Vec3 mean_normal(const Surface& surface, const Vec3& direction) {
     return sum.normalized();
 }
 
-/// The surface with normals towards `direction`: 1 if all pairs of points are convex, -1 if all are concave. Every point
-/// is paired with those that follow it by a power of two.
+/// The surface with normals towards `direction`: 1 if all pairs of points are convex, -1 if all are concave. Every
+/// point is paired with those that follow it by a power of two.
 double convexity(const Surface& surface, const Vec3& direction) {
     const std::size_t count = surface.points.size();
     const auto normal = [&](std::size_t i) -> Vec3 {

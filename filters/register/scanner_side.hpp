@@ -14,8 +14,8 @@ namespace scanmill::registration {
 /// If all normals are turned towards the scanner, neighbours have similar ones; elsewhere the surface would be seen
 /// edge-on. +z stays if at most 1 % more neighbours contradict each other than for the best of 193 axes all round.
 /// Otherwise the direction is the mean of the normals turned towards the best axis. Its sign is the one for which the
-/// surface is convex as a whole, as objects seen from outside are. The sign of +z changes only if the surface is clearly
-/// concave.
+/// surface is convex as a whole, as objects seen from outside are. The sign of +z changes only if the surface is
+/// clearly concave.
 ///
 /// Pre: finite points. Ties: the first axis. Deterministic; cost: about 10 ms.
 Vec3 scanner_side(std::span<const Vec3> points);

@@ -326,9 +326,10 @@ TEST(RegisterClouds, WithoutAScannersSide_AreWarnedOf) {
     const CloudsRun found = run(clouds);
     EXPECT_LT(gap(clouds, found.transforms), 0.3) << "the sides are found in the points";
     EXPECT_EQ(found.metrics.find("placed")->value, 8);
-    EXPECT_THAT(found.warnings,
-                Contains(AllOf(HasSubstr("without a column `approach` or `normal`: the side of the scanner is estimated"),
-                               HasSubstr("view 5"))));
+    EXPECT_THAT(
+        found.warnings,
+        Contains(AllOf(HasSubstr("without a column `approach` or `normal`: the side of the scanner is estimated"),
+                       HasSubstr("view 5"))));
 }
 
 TEST(RegisterClouds, OfViewsThatTheFieldCutsOff_PairsThatNoOtherViewsConfirm_AreDoubtful) {
