@@ -98,8 +98,7 @@ std::vector<Carried> carried_columns(const From& from, const TransferParams& par
         if (!found)
             throw Error("`from` has no column '{}'; {}", name, names_in(from))
                 .hint("`columns: colour` carries colours where there are any, and accepts scans without");
-        if (!names.insert(name).second)
-            throw Error("columns contains '{}' twice", name).hint("remove one of the two");
+        if (!names.insert(name).second) throw Error("columns contains '{}' twice", name).hint("remove one of the two");
         carried.push_back(*found);
     }
     return carried;
@@ -136,9 +135,7 @@ void require_target(const TriangleMesh& to) {
 double spacing_of(const PointCloud& from) { return point_spacing(from.positions.span()); }
 double spacing_of(const TriangleMesh& from) { return edge_spacing(from); }
 
-PointSamples samples_of(const PointCloud& from, double distance, unsigned threads) {
-    return {from, distance, threads};
-}
+PointSamples samples_of(const PointCloud& from, double distance, unsigned threads) { return {from, distance, threads}; }
 MeshSamples samples_of(const TriangleMesh& from, double distance, unsigned threads) {
     return {from, distance, threads};
 }
@@ -146,8 +143,7 @@ MeshSamples samples_of(const TriangleMesh& from, double distance, unsigned threa
 /// The squared distance within which two colours are similar. A mesh is interpolated, so all its colours are.
 double similar_colours(const PointSamples& samples, const Column& colour, unsigned threads) {
     const double full = colour.type() == ScalarType::uint8 ? 255 : 65535;
-    const double distance =
-        std::max(similar_medians * samples.colour_noise(colour, threads), similar_floor * full);
+    const double distance = std::max(similar_medians * samples.colour_noise(colour, threads), similar_floor * full);
     return distance * distance;
 }
 double similar_colours(const MeshSamples&, const Column&, unsigned) { return std::numeric_limits<double>::infinity(); }
@@ -395,8 +391,7 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
     const std::size_t rows = to.positions.size();
     const Column* filled = filled_column(columns_of(to), params);
     std::vector<std::unique_ptr<ColumnWriter>> writers;
-    for (const Carried& column : carried)
-        writers.push_back(writer_of(column, rows, source, params.method, threads));
+    for (const Carried& column : carried) writers.push_back(writer_of(column, rows, source, params.method, threads));
     Array<Outcome> outcomes(rows);
     std::atomic<std::size_t> done = 0;
     for_each_chunk(threads, rows, chunk, [&](std::size_t begin, std::size_t end) {
@@ -423,14 +418,15 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
     result.filled = count(Outcome::filled);
     result.unknown = count(Outcome::unknown) + result.facing_away;
     if (result.transferred + result.facing_away == 0 && result.unknown > 0)
-        throw Error("none of the {} of `to` is within {:.4g} u of `from`",
-                    count_text(result.unknown, "row", "rows"), result.max_distance)
+        throw Error("none of the {} of `to` is within {:.4g} u of `from`", count_text(result.unknown, "row", "rows"),
+                    result.max_distance)
             .hint("check that both are in one place, or raise max-distance");
     const std::size_t near = result.transferred + result.facing_away;
     if (static_cast<double>(result.facing_away) > doubtful_share * static_cast<double>(near))
-        context.doubt(fmt::format("{} of the {} of `to` that are near `from` face away from it, and have no values; "
-                                  "one of the two may be inside out",
-                                  result.facing_away, count_text(near, "row", "rows")));
+        context.doubt(
+            fmt::format("{} of the {} of `to` that are near `from` face away from it, and have no values; "
+                        "one of the two may be inside out",
+                        result.facing_away, count_text(near, "row", "rows")));
     result.result = to;
     Array<u8> marks(rows);
     std::ranges::transform(outcomes, marks.begin(), [](Outcome outcome) { return outcome == Outcome::transferred; });

@@ -52,10 +52,10 @@ struct TransferResult {
 /// be below about 100 degrees (cosine above -0.2, as normals have noise). A direction that is missing, 0 or NaN allows
 /// every side.
 ///
-/// Points, blend. The samples of a row are the points at the 24 nearest positions that count. The nearest must be within
-/// `max_distance`, the others within twice that. If none of the 24 counts, more positions are searched. A sample at
-/// distance d has the weight (1 - d² / r²), where r is slightly beyond the farthest of them, times the cosines to its
-/// normal and to its `approach` (at least 0.05 each).
+/// Points, blend. The samples of a row are the points at the 12 nearest positions that count. The nearest must be
+/// within `max_distance`, the others within four times that. If none of the 12 counts, more positions are searched. A
+/// sample at distance d has the weight (1 - d² / r²), where r is slightly beyond the farthest of them, times the
+/// cosines to its normal and to its `approach` (at least 0.05 each).
 ///  - Colours: `colour` of 3 or 4 bytes, `colour16` of 3 or 4 × uint16. The result is the mean, in linear light, of the
 ///    samples whose colour is similar to the colour that has the most weight of similar samples around it (ties: the
 ///    nearer one). So edges between colours stay sharp. Two colours are similar if their distance (of the codes of red,

@@ -39,9 +39,7 @@ struct Checkers {
     }
 };
 
-double difference(const Colour& a, const Colour& b) {
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
+double difference(const Colour& a, const Colour& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// The point of the sphere of radius 1, or of the cube of edge 1, below a point with noise.
 Vec3 on_surface(VirtualScanParams::Shape shape, const Vec3& p) {

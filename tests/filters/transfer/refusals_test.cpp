@@ -12,9 +12,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-PointCloud coloured() {
-    return with(cloud_of({{0, 0, 0}, {1, 0, 0}}), column_of<u8>("colour", 3, {1, 2, 3, 4, 5, 6}));
-}
+PointCloud coloured() { return with(cloud_of({{0, 0, 0}, {1, 0, 0}}), column_of<u8>("colour", 3, {1, 2, 3, 4, 5, 6})); }
 
 template <class From, class To>
 std::string refusal(const From& from, const To& to, const TransferParams& params = {}) {

@@ -32,11 +32,12 @@ TriangleMesh unit_square(double z = 0) {
 }
 
 TEST(Transfer, ThreePointsByHand_AreBlendedByDistance) {
-    // The radius is that of the farthest point, and 1/24 more in its square: 4 × 25 / 24. The weights of the distances
-    // 0, 1 and 2 are 1, 1 - 24/100 and 1 - 96/100.
-    const PointCloud from = with(cloud_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}), column_of<double>("height", 1, {0, 1, 2}));
+    // The square of the radius is that of the farthest distance and 1/12 more: 4 × 13/12. The weights of the distances
+    // 0, 1 and 2 are 13/13, 10/13 and 1/13.
+    const PointCloud from =
+        with(cloud_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}), column_of<double>("height", 1, {0, 1, 2}));
     const auto result = carried(from, cloud_of({{0, 0, 0}}), columns_within({"height"}, 10));
-    EXPECT_NEAR(numbers_in(result.result, "height").at(0), (0.76 * 1 + 0.04 * 2) / (1 + 0.76 + 0.04), 1e-12);
+    EXPECT_NEAR(numbers_in(result.result, "height").at(0), (10 * 1 + 1 * 2) / 24.0, 1e-12);
 }
 
 TEST(Transfer, BlackAndWhite_AreMixedInLinearLight) {
@@ -93,8 +94,9 @@ TEST(Transfer, EquallyNearPoints_TheLowestRowCounts) {
     from.positions = std::move(positions);
     from.columns.add(column_of("view", 1, views));
     for (const Method method : {Method::nearest, Method::blend}) {
-        EXPECT_THAT(numbers_in(carried(from, cloud_of({{0, 0, 0}}), columns_within({"view"}, 2, method)).result, "view"),
-                    ElementsAre(0));
+        EXPECT_THAT(
+            numbers_in(carried(from, cloud_of({{0, 0, 0}}), columns_within({"view"}, 2, method)).result, "view"),
+            ElementsAre(0));
     }
     // The 30 grid points at a distance of 3 from the origin: (3, 0, 0) and its like, (2, 2, 1) and its like.
     Array<Vec3> grid;
@@ -116,11 +118,11 @@ TEST(Transfer, EquallyNearPoints_TheLowestRowCounts) {
 }
 
 TEST(Transfer, MaxDistance_IsReachedByPointsAtIt_AndBeyondRowsAreMarked) {
-    const PointCloud from = with(with(with(with(cloud_of({{0, 0, 0}, {0, 1, 0}}),
-                                                column_of<u8>("colour", 4, {1, 2, 3, 4, 1, 2, 3, 4})),
-                                           column_of<float>("height", 1, {7, 7})),
-                                      column_of<std::uint16_t>("colour16", 3, {5, 6, 7, 5, 6, 7})),
-                                 Column("list", Buffer<u64>{0, 1, 3}, Buffer<u8>{9, 8, 7}));
+    const PointCloud from =
+        with(with(with(with(cloud_of({{0, 0, 0}, {0, 1, 0}}), column_of<u8>("colour", 4, {1, 2, 3, 4, 1, 2, 3, 4})),
+                       column_of<float>("height", 1, {7, 7})),
+                  column_of<std::uint16_t>("colour16", 3, {5, 6, 7, 5, 6, 7})),
+             Column("list", Buffer<u64>{0, 1, 3}, Buffer<u8>{9, 8, 7}));
     const PointCloud to = cloud_of({{2, 0, 0}, {std::nextafter(2.0, 3.0), 0, 0}});
     for (const Method method : {Method::nearest, Method::blend}) {
         const auto result = carried(from, to, columns_within({"colour", "height", "colour16", "list"}, 2, method));
@@ -187,9 +189,10 @@ TEST(Transfer, ThinWall_TheBackDoesNotComeThrough) {
     const std::vector<double> red{200, 0, 0, 200, 0, 0, 200, 0, 0, 200, 0, 0};
     for (const char* name : {"normal", "approach"})
         for (const Method method : {Method::blend, Method::nearest})
-            EXPECT_EQ(numbers_in(carried(wall(name), unit_square(0.001), columns_within({"colour"}, 0.5, method)).result,
-                                 "colour"),
-                      red)
+            EXPECT_EQ(
+                numbers_in(carried(wall(name), unit_square(0.001), columns_within({"colour"}, 0.5, method)).result,
+                           "colour"),
+                red)
                 << name;
     const auto blind = carried(wall("other"), unit_square(0.001), columns_within({"colour"}, 0.5));
     EXPECT_NE(numbers_in(blind.result, "colour"), red) << "without directions, the back is nearer";
@@ -228,7 +231,8 @@ TEST(Transfer, FromMesh_InterpolatesVertices_AndCopiesFacesAndNearestCorners) {
     const auto result = carried(from, to, columns_within({"height", "view", "part", "colour"}, 2));
     EXPECT_THAT(numbers_in(result.result, "height"),
                 ElementsAre(5, testing::DoubleNear(7.5, 1e-12), testing::DoubleNear(27, 1e-12), 15));
-    EXPECT_THAT(numbers_in(result.result, "view"), ElementsAre(4, 4, 7, 4)) << "the last is as near to row 0 as to 1 and 2";
+    EXPECT_THAT(numbers_in(result.result, "view"), ElementsAre(4, 4, 7, 4))
+        << "the last is as near to row 0 as to 1 and 2";
     EXPECT_THAT(numbers_in(result.result, "part"), ElementsAre(8, 8, 9, 8));
     EXPECT_EQ(numbers_in(result.result, "colour").at(0), 188) << "half of the light";
     const auto nearest = carried(from, to, columns_within({"height"}, 2, Method::nearest));
