@@ -79,8 +79,9 @@ struct TransferResult {
 ///       no colours, nothing else is checked and `to` is returned. Throws Error otherwise; also if no row is within
 ///       `max_distance`.
 /// Post: a column of `to` with the name of a carried column, or `transferred`, is replaced. Carrying from a mesh to
-///       itself changes nothing, and neither does method nearest from points at different positions. Doubts the result
-///       if more than 5 % of the rows near `from` face away from it.
+///       itself changes nothing if its vertices are in triangles, at different positions, and no triangle at a vertex
+///       faces away from it. Neither does method nearest from points at different positions. Doubts the result if more
+///       than 5 % of the rows near `from` face away from it.
 /// Deterministic: the same bytes for any number of threads and any processor.
 /// Cost: O(m log n) for m rows and n points; about 3 us per row, 1 us and 150 bytes per point.
 /// Metrics: `transferred`, `unknown`, `filled`, `max-distance`.
