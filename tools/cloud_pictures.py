@@ -6,6 +6,8 @@ import random
 
 from drawing import BRIGHT, INK, PALE, SOLID, Picture
 
+BLUE = "#3e80be"
+
 
 def voxel_thin():
     """The same profile twice: above with voxels of one size, below with octree leaves limited by the curvature."""
@@ -146,6 +148,35 @@ def outlier_removal():
     for i, p in enumerate(points):
         outlier = sizes[i] <= neighbours
         picture.dot(p, BRIGHT if outlier else INK, 4, hollow=outlier)
+    return picture
+
+
+def transfer():
+    """Noisy points in two colours give the vertices of a polyline the colour of most of their neighbours."""
+    picture = Picture(8, 3.4)
+    source = random.Random(12)
+    surface = lambda x: 1.5 + 0.55 * math.sin(0.9 * x + 0.4)
+    points = []
+    for i in range(150):
+        x = 0.3 + 7.4 * i / 149
+        if 5.0 < x < 6.3:
+            continue
+        p = (x, surface(x) + source.gauss(0, 0.12))
+        is_bright = (x > 2.9) != (source.random() < 0.08)
+        points.append((p, is_bright))
+        picture.dot(p, BRIGHT if is_bright else BLUE, 2.5)
+    drawn = lambda p: (p[0], p[1] + 0.9)  # the mesh above its points
+    vertices = [(0.3 + 7.4 * i / 20, surface(0.3 + 7.4 * i / 20)) for i in range(21)]
+    for p, q in zip(vertices, vertices[1:]):
+        picture.line(drawn(p), drawn(q), INK, 1.5)
+    for v in vertices:
+        near = sorted(points, key=lambda point: math.dist(point[0], v))[:12]
+        if math.dist(near[0][0], v) > 0.25:
+            picture.dot(drawn(v), PALE, 6)
+            continue
+        radius = math.dist(near[-1][0], v) ** 2 * 13 / 12
+        weight = sum((1 if bright else -1) * (1 - math.dist(p, v) ** 2 / radius) for p, bright in near)
+        picture.dot(drawn(v), BRIGHT if weight > 0 else BLUE, 6)
     return picture
 
 

@@ -45,6 +45,7 @@ def main():
         ("smooth", cleanups.smooth),
         ("tessellate", patches.tessellate),
         ("tight_cocone", cocones.tight_cocone),
+        ("transfer", clouds.transfer),
         ("virtual_probe", frames.virtual_probe),
         ("probe_compensate", frames.probe_compensate),
         ("virtual_scan", clouds.virtual_scan),

@@ -63,15 +63,32 @@ void put_attributes(const std::array<std::string_view, 3>& names, const Numbers&
     }
 }
 
+/// Writes the colours of the vertices as resource 2; the index of a colour is that of its vertex.
+void put_colours(const Column& colour, OutputBuffer& xml) {
+    xml.text("<m:colorgroup id=\"2\">\n");
+    const u8* channels = colour.values<u8>().data();
+    for (std::size_t row = 0; row < colour.rows(); ++row, channels += colour.components()) {
+        xml.text(fmt::format("<m:color color=\"#{:02X}{:02X}{:02X}", channels[0], channels[1], channels[2]));
+        if (colour.components() == 4) xml.text(fmt::format("{:02X}", channels[3]));
+        xml.text("\"/>\n");
+    }
+    xml.text("</m:colorgroup>\n");
+}
+
 void put_model(const TriangleMesh& mesh, const Vec3& offset, OutputBuffer& xml) {
     const std::string name = valid_text(mesh.frame.name);
+    const Column* const colour = TextColumns(mesh.vertex_columns).colour;
     xml.text(fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
-<model unit="{}" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
-<resources><object id="1"{}><mesh>
+<model unit="{}" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"{}>
+<resources>)",
+                         name_of(mesh.frame.unit),
+                         colour ? R"( xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02")" : ""));
+    if (colour) put_colours(*colour, xml);
+    xml.text(fmt::format(R"(<object id="1"{}{}><mesh>
 <vertices>
 )",
-                         name_of(mesh.frame.unit),
-                         name.empty() ? "" : fmt::format(R"( name="{}")", xml_escaped(name))));
+                         name.empty() ? "" : fmt::format(R"( name="{}")", xml_escaped(name)),
+                         colour ? R"( pid="2" pindex="0")" : ""));
     const Vec3 shift = mesh.frame.origin - offset;
     for (const Vec3& position : mesh.positions) {
         put_attributes({R"(<vertex x=")", R"(" y=")", R"(" z=")"}, (shift + position).cast<float>().eval(), xml);
@@ -80,6 +97,7 @@ void put_model(const TriangleMesh& mesh, const Vec3& offset, OutputBuffer& xml) 
     xml.text("</vertices>\n<triangles>\n");
     for (const Triangle& triangle : mesh.triangles) {
         put_attributes({R"(<triangle v1=")", R"(" v2=")", R"(" v3=")"}, triangle, xml);
+        if (colour) put_attributes({R"(" pid="2" p1=")", R"(" p2=")", R"(" p3=")"}, triangle, xml);
         xml.text("\"/>\n");
     }
     xml.text("</triangles>\n</mesh></object></resources>\n<build><item objectid=\"1\"");
@@ -107,7 +125,9 @@ constexpr std::string_view relationships = R"(<?xml version="1.0" encoding="UTF-
 void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TriangleMesh mesh = with_used_vertices(*value.get<TriangleMesh>(), "3MF", options);
     require_solid(mesh);
-    warn_bare_triangles(mesh, "3MF", options);
+    const Column* const colour = TextColumns(mesh.vertex_columns).colour;
+    const std::string_view kept[] = {colour ? std::string_view(colour->name()) : ""};
+    warn_bare_triangles(mesh, "3MF", options, kept);
     if (mesh.frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
              "3MF needs a unit, but the scan has none: 1 was written as 1 mm; declare the scan's unit to avoid this");

@@ -15,13 +15,13 @@ using testing::HasSubstr;
 
 TEST(ThreemfLosses, AreReportedByName) {
     TriangleMesh mesh = cube_in(LengthUnit::millimetre);
-    mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>(Array<u8>(24, u8(9)))));
+    mesh.vertex_columns.add(Column("normal", 3, Buffer<float>(Array<float>(24, 1.f))));
     mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));
     mesh.sharp_edges = {{0, 1}, {1, 2}};
     Warnings warnings;
     bytes_of_3mf(mesh, &warnings);
     EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("3MF left out 1 column of the vertices (colour)"),
+                ElementsAre(HasSubstr("3MF left out 1 column of the vertices (normal)"),
                             HasSubstr("3MF left out 1 column of the faces (group)"), HasSubstr("2 edges are sharp")));
 }
 

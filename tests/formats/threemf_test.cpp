@@ -31,6 +31,25 @@ TEST(ThreemfWriter, Cube_IsReadAsACube) {
     EXPECT_EQ(seen.box.high, Vec3(2.5, 2.5, 2.5));
 }
 
+TEST(ThreemfWriter, ColoursOfVertices_AreAGroupOfColours) {
+    TriangleMesh mesh = cube_in(LengthUnit::millimetre, 2.5);
+    Array<u8> colours;
+    for (u8 vertex = 0; vertex < 8; ++vertex)
+        for (const int channel : {10 * vertex, 255, 0}) colours.push_back(static_cast<u8>(channel));
+    mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>(std::move(colours))));
+    Warnings warnings;
+    const std::string bytes = bytes_of_3mf(mesh, &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    EXPECT_EQ(read_by_3mf(bytes).vertices.size(), 8u) << "in lib3mf's strict mode";
+    const std::string model = model_in_3mf(bytes);
+    const Triangle& first = mesh.triangles[0];
+    EXPECT_THAT(model,
+                AllOf(HasSubstr("<m:color color=\"#00FF00\"/>\n<m:color color=\"#0AFF00\"/>"),
+                      HasSubstr("<object id=\"1\" pid=\"2\" pindex=\"0\">"),
+                      HasSubstr(fmt::format("pid=\"2\" p1=\"{}\" p2=\"{}\" p3=\"{}\"", first[0], first[1], first[2]))));
+    EXPECT_THAT(through_assimp(mesh, "a.3mf").error, "");
+}
+
 TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenExactly) {
     for (const double edge : {10.0, 12.0, 15.5, 0.001, 8.123, 1234.5}) {
         const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, edge), "a.3mf");

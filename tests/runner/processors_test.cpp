@@ -48,6 +48,7 @@ const std::vector<Step> steps{
     {"repaired", "repair", "", "mesh: clustered"},
     {"filled", "fill-holes", "", "mesh: repaired"},
     {"from-normals", "poisson", "depth: 6", "points: with-normals"},
+    {"coloured", "transfer", "columns: [view, normal, moved]", "from: with-normals, to: from-normals"},
     {"tetrahedra", "delaunay", "", "points: smoothed"},
     {"open", "cocone", "", "tets: tetrahedra"},
     {"closed", "tight-cocone", "", "tets: tetrahedra"},

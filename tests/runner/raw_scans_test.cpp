@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "scanmill/formats/files.hpp"
 #include "support/folders.hpp"
 #include "support/known_models.hpp"
+#include "support/point_sets.hpp"
 #include "support/program.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
@@ -120,6 +122,45 @@ TEST_F(RawScans, TenViewsOfTheBunny_GiveTheBunny_WithTheirNoise) {
     EXPECT_THAT(cell.at("doubts").dump(), HasSubstr("workflow raw-scans"));
     EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("genus"), 0);
     EXPECT_GT(metrics_of("out/merge-views.stl", merged, "thresholds=0.5 %diag").at("f-score").get<double>(), 0.94);
+}
+
+/// A sphere, red above and blue below, that lacks its south pole.
+TEST_F(RawScans, ColouredScan_ThroughRawScansAndPoisson_KeepsItsColours_AndWhatIsFilledHasNone) {
+    const PointCloud sphere = fibonacci_sphere(20000);
+    std::string coloured = "x,y,z,r,g,b\n", bare = "x,y,z\n";
+    for (const Vec3& p : sphere.positions) {
+        if (p.z() < -0.95) continue;
+        coloured += fmt::format("{},{},{},{}\n", p.x(), p.y(), p.z(), p.z() > 0 ? "200,20,20" : "20,20,200");
+        bare += fmt::format("{},{},{}\n", p.x(), p.y(), p.z());
+    }
+    folder_.write("coloured.csv", coloured);
+    folder_.write("bare.csv", bare);
+    for (const std::string workflow : {"raw-scans", "poisson"}) {
+        const json cell = cells_of(shipped(workflow + ".yaml"), {"coloured.csv"}).at(0);
+        const auto mesh = read_mesh(folder_.path() / cell.at("outputs").at(0).at("file").get<std::string>());
+        const Column* colour = mesh->vertex_columns.find("colour");
+        const Column* transferred = mesh->vertex_columns.find("transferred");
+        const Column* filled = mesh->vertex_columns.find("filled");
+        ASSERT_TRUE(colour && transferred && (filled || workflow == "poisson"));
+        std::size_t without = 0;
+        for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+            const double z = mesh->frame.origin.z() + mesh->positions[i].z();
+            const std::array<double, 3> found{colour->number(i, 0), colour->number(i, 1), colour->number(i, 2)};
+            without += transferred->number(i) == 0;
+            EXPECT_TRUE(!filled || transferred->number(i) == 1 - filled->number(i));
+            if (transferred->number(i) == 0) {
+                EXPECT_EQ(found, (std::array{128.0, 128.0, 128.0}));
+                EXPECT_LT(z, -0.9);
+            } else if (std::abs(z) > 0.1) {
+                EXPECT_EQ(found, z > 0 ? (std::array{200.0, 20.0, 20.0}) : (std::array{20.0, 20.0, 200.0}));
+            }
+        }
+        EXPECT_GT(without, 0u) << workflow;
+        const json plain = cells_of(shipped(workflow + ".yaml"), {"bare.csv"}).at(0);
+        EXPECT_NE(plain.at("outcome"), "failed");
+        const auto same = read_mesh(folder_.path() / plain.at("outputs").at(0).at("file").get<std::string>());
+        EXPECT_FALSE(same->vertex_columns.find("transferred"));
+    }
 }
 
 TEST_F(RawScans, TenViewsOfTheBunny_ThroughTightCocone_AreClosedWithDoubts_OrRefusedByItsNoiseMode) {
