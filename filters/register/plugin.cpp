@@ -34,8 +34,8 @@ SCANMILL_FILTER() {
             above(0), word("auto"))
         .param(
             "poses", &P::poses,
-            "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are, and nothing is "
-            "registered.",
+            "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are. A view that "
+            "fits the others better elsewhere makes the result doubtful.",
             word("none"))
         .param(
             "start", &P::start,

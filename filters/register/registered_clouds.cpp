@@ -8,6 +8,7 @@
 #include <map>
 
 #include "merge/scan_poses.hpp"
+#include "register/misplaced_views.hpp"
 #include "register/register_to_target.hpp"
 #include "register/register_views.hpp"
 #include "register/scanner_side.hpp"
@@ -105,9 +106,14 @@ Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Cont
     return directions;
 }
 
-std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::string> names, Context& context) {
-    std::vector<ViewToRegister> result;
+struct ViewsToRegister {
+    std::vector<ViewToRegister> views;
+    /// Names of the views whose scanner is assumed on the side of +z, or on a side found in their points.
     std::vector<std::string> assumed, estimated;
+};
+
+ViewsToRegister views_to_register(Views views, std::span<const std::string> names) {
+    ViewsToRegister result;
     for (std::size_t i = 0; i < views.size(); ++i) {
         ViewToRegister view{names[i], views[i]->positions.span(), Vec3::UnitZ(), {}};
         const Vec3 direction = sum_of_directions(*views[i]);
@@ -115,19 +121,22 @@ std::vector<ViewToRegister> views_to_register(Views views, std::span<const std::
             view.to_scanner = direction;
         } else {
             view.to_scanner = registration::scanner_side(view.points);
-            (view.to_scanner == Vec3(Vec3::UnitZ()) ? assumed : estimated).push_back(names[i]);
+            (view.to_scanner == Vec3(Vec3::UnitZ()) ? result.assumed : result.estimated).push_back(names[i]);
         }
-        result.push_back(view);
+        result.views.push_back(view);
     }
+    return result;
+}
+
+void warn_of_unknown_sides(const ViewsToRegister& views, Context& context) {
     const auto warn = [&](const std::vector<std::string>& which, const char* what) {
         if (which.empty()) return;
         context.warn(fmt::format(
             "{} without a column `approach` or `normal`: {} ({})", count_text(which.size(), "view is", "views are"),
             what, enumerated(std::span<const std::string>(which).first(std::min(which.size(), most_named)))));
     };
-    warn(assumed, "the scanner is assumed on the side of +z");
-    warn(estimated, "the side of the scanner is estimated, because +z would see much of the surface edge-on");
-    return result;
+    warn(views.assumed, "the scanner is assumed on the side of +z");
+    warn(views.estimated, "the side of the scanner is estimated, because +z would see much of the surface edge-on");
 }
 
 /// A motion of world coordinates as one of positions relative to the origins of the frames.
@@ -158,6 +167,16 @@ void report_counts(std::size_t views, std::size_t placed, Context& context) {
     context.metric("refused", static_cast<double>(views - placed));
 }
 
+RegisterViewsParams options_of(const RegisterParams& params) {
+    RegisterViewsParams options;
+    options.overlap = params.overlap.value();
+    if (params.resolution) options.resolution = params.resolution->value();
+    options.seed_tries = params.seed_tries;
+    options.as_is = params.as_is;
+    options.whole_views = params.whole_views;
+    return options;
+}
+
 /// The motions of `params.poses`.
 Transforms given_motions(Views views, const RegisterParams& params, Context& context) {
     if (params.start)
@@ -186,6 +205,39 @@ Transforms given_motions(Views views, const RegisterParams& params, Context& con
         context.doubt(sentence);
     }
     return result;
+}
+
+/// Doubts poses of a file if single views fit the others better elsewhere. Views that cannot be registered are not
+/// tested.
+void test_motions(Views views, const Transforms& given, const RegisterParams& params, Context& context) {
+    std::vector<std::shared_ptr<const PointCloud>> placed;
+    for (const auto& view : views)
+        if (std::ranges::find(given.motions, view->frame.name, &RigidTransform::from) != given.motions.end())
+            placed.push_back(view);
+    const auto has_unit_of_first = [&](const auto& view) { return view->frame.unit == placed[0]->frame.unit; };
+    if (placed.size() < 3 || seen_from_all_sides(placed) || !std::ranges::all_of(placed, has_unit_of_first)) return;
+    const std::vector<std::string> names = names_of(placed);
+    ViewsToRegister to_test = views_to_register(placed, names);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        to_test.views[i].start =
+            local(given.motions[i], placed[i]->frame.origin, placed[0]->frame.origin, placed[0]->frame.unit);
+    std::vector<std::string> misplaced;
+    try {
+        double spacing = 0;
+        for (const auto& [view, distance] : misplaced_views(to_test.views, options_of(params), spacing, context))
+            misplaced.push_back(distance ? fmt::format("'{}' fits them {:.3g} {} ({:.1f} spacings) away from its pose",
+                                                       names[view], *distance, symbol(placed[0]->frame.unit),
+                                                       *distance / spacing)
+                                         : fmt::format("lines of sight contradict '{}'", names[view]));
+    } catch (const Error&) {
+        return;  // equal views, or views without a surface, cannot be tested
+    }
+    if (!misplaced.empty())
+        context.doubt(fmt::format("{} of {} {} not fit the others where the file of poses puts {}: {}; without `poses` "
+                                  "the views are registered",
+                                  misplaced.size(), count_text(names.size(), "view", "views"),
+                                  by_count(misplaced.size(), "does", "do"), by_count(misplaced.size(), "it", "them"),
+                                  fmt::join(misplaced, ", ")));
 }
 
 /// Every view stays where it is.
@@ -250,16 +302,6 @@ void doubt_unconfirmed(const RegisterViewsResult& found, std::span<const std::st
                                   by_count(unconfirmed.size(), "is", "are"), fmt::join(unconfirmed, ", ")));
 }
 
-RegisterViewsParams options_of(const RegisterParams& params) {
-    RegisterViewsParams options;
-    options.overlap = params.overlap.value();
-    if (params.resolution) options.resolution = params.resolution->value();
-    options.seed_tries = params.seed_tries;
-    options.as_is = params.as_is;
-    options.whole_views = params.whole_views;
-    return options;
-}
-
 void report(const RegisterViewsResult& found, Context& context) {
     report_counts(found.views.size(), found.placed, context);
     context.metric("pairs", static_cast<double>(found.pairs.size()));
@@ -280,7 +322,11 @@ void report(const RegisterViewsResult& found, Context& context) {
 
 Transforms registered_clouds(Views views, const RegisterParams& params, Context& context) {
     if (views.empty()) throw Error("needs views; there are none").hint("wire the scans: 'in: {points: views}'");
-    if (params.poses) return given_motions(views, params, context);
+    if (params.poses) {
+        Transforms given = given_motions(views, params, context);
+        test_motions(views, given, params, context);
+        return given;
+    }
     if (views.size() == 1) return unmoved(views, context);
     const std::vector<std::string> names = names_of(views);
     require_one_unit(views, names);
@@ -299,7 +345,9 @@ Transforms registered_clouds(Views views, const RegisterParams& params, Context&
     }
     const LengthUnit unit = views[0]->frame.unit;
     const Vec3& origin = views[0]->frame.origin;
-    std::vector<ViewToRegister> inputs = views_to_register(views, names, context);
+    ViewsToRegister to_register = views_to_register(views, names);
+    warn_of_unknown_sides(to_register, context);
+    std::vector<ViewToRegister>& inputs = to_register.views;
     if (params.start) {
         const std::vector<std::optional<RigidTransform>> poses =
             merging::poses_of(frames_of(views), poses_in(*params.start, context), context);

@@ -29,7 +29,8 @@ struct RegisterParams {
 
 /// One motion per placed view, from the view's frame to that of the first placed view, and the refused views with their
 /// reasons. Views without a name are called `view 1`, `view 2`, … See register_views() for method, ties and cost. With
-/// `poses`, the motions are those of the file, and nothing is tested.
+/// `poses`, the motions are those of the file. Single views that do not fit the others there are a doubt: see
+/// misplaced_views.hpp.
 ///
 /// Throws Error for no view, different units, the errors of register_views(), files whose poses do not match the views,
 /// and refused views, all of them with numbers, with OnRefusal::fail or if fewer than two views are placed. With
