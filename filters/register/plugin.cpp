@@ -32,11 +32,10 @@ SCANMILL_FILTER() {
             "Edge of the voxels to which views are reduced; `auto` is 4 spacings, or a tenth of the size of a view if "
             "that is larger. Poses are refined with all points.",
             above(0), word("auto"))
-        .param(
-            "poses", &P::poses,
-            "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are. A view that "
-            "fits the others better elsewhere makes the result doubtful.",
-            word("none"))
+        .param("poses", &P::poses,
+               "A Stanford .conf or a JSON file with the poses of the views; they are taken as they are. A view that "
+               "fits the others better elsewhere makes the result doubtful.",
+               word("none"))
         .param(
             "start", &P::start,
             "A Stanford .conf or a JSON file with poses to begin with; they are refined and tested, and a wrong one is "

@@ -233,11 +233,11 @@ void test_motions(Views views, const Transforms& given, const RegisterParams& pa
         return;  // equal views, or views without a surface, cannot be tested
     }
     if (!misplaced.empty())
-        context.doubt(fmt::format("{} of {} {} not fit the others where the file of poses puts {}: {}; without `poses` "
-                                  "the views are registered",
-                                  misplaced.size(), count_text(names.size(), "view", "views"),
-                                  by_count(misplaced.size(), "does", "do"), by_count(misplaced.size(), "it", "them"),
-                                  fmt::join(misplaced, ", ")));
+        context.doubt(fmt::format(
+            "{} of {} {} not fit the others where the file of poses puts {}: {}; without `poses` "
+            "the views are registered",
+            misplaced.size(), count_text(names.size(), "view", "views"), by_count(misplaced.size(), "does", "do"),
+            by_count(misplaced.size(), "it", "them"), fmt::join(misplaced, ", ")));
 }
 
 /// Every view stays where it is.

@@ -39,8 +39,10 @@ SCANMILL_FILTER() {
                   "`nearest`."}},
                 "How values are found.")
         .param("max-distance", &P::max_distance,
-               "Rows of `to` that are farther from `from` get no values. `auto` is 3 spacings of `from`.", above(0),
-               word("auto"))
+               "Rows of `to` that are farther from `from` get no values. `auto` is 1.5 times the median distance of a "
+               "point "
+               "to its 12th neighbour, about 3 spacings of an even scan; of a mesh, 3 times the median edge.",
+               above(0), word("auto"))
         .param("filled", &P::filled, "Whether rows that the column `filled` marks get values, too.")
         .metric("transferred", Unit::count, "Rows of `to` with values of `from`; 0 if no column is carried.")
         .metric("unknown", Unit::count,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
@@ -25,8 +26,31 @@ constexpr std::size_t most_at_one_position = 8;
 /// The cosine at which a surface faces away, and the least weight of one that does not. Vertex normals of noisy meshes
 /// and at sharp corners may be far from those of the points beside them.
 constexpr double least_cosine = -0.2, least_weight = 0.05;
-/// Positions whose nearest neighbours show the noise of the colours.
+/// Positions of which medians are taken.
 constexpr std::size_t most_noise_samples = 100'000;
+constexpr double default_radii = 1.5, default_spacings = 3;
+
+/// The median of a number of every position, or of evenly chosen ones. Pre: at least one position.
+template <class Number>
+double median_of(std::size_t positions, unsigned threads, const Number& number) {
+    const std::size_t step = (positions - 1) / most_noise_samples + 1, count = (positions - 1) / step + 1;
+    Array<double> numbers(count);
+    for_each_chunk(threads, count, 1024, [&](std::size_t begin, std::size_t end) {
+        NeighbourBuffer buffer;
+        for (std::size_t i = begin; i < end; ++i) numbers[i] = number(static_cast<u32>(i * step), buffer);
+    });
+    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(numbers.begin(), middle, numbers.end());
+    return *middle;
+}
+
+/// The median distance of a position from its last of `neighbours` nearest other positions; 0 for a single one.
+double neighbourhood_radius(const PointTree& tree, unsigned threads) {
+    return std::sqrt(median_of(tree.positions().size(), threads, [&](u32 index, NeighbourBuffer& buffer) {
+        const std::span<const Neighbour> near = tree.nearest(index, neighbours, buffer);
+        return near.empty() ? 0 : near.back().squared;
+    }));
+}
 
 /// The weight of a direction for a normal; 0 if it faces away, 1 if one of them is unknown.
 double facing_weight(const Vec3& direction, const Vec3& normal) {
@@ -66,7 +90,7 @@ Array<Vec3> normals_of(const TriangleMesh& mesh) {
     return normals;
 }
 
-PointSamples::PointSamples(const PointCloud& cloud, double max_distance, unsigned threads)
+PointSamples::PointSamples(const PointCloud& cloud, std::optional<double> max_distance, unsigned threads)
     : tree_(cloud.positions.span(), threads),
       rows_(tree_.positions().size(),
             [&](const auto& add) {
@@ -74,8 +98,7 @@ PointSamples::PointSamples(const PointCloud& cloud, double max_distance, unsigne
             }),
       normals_(normals_of(cloud)),
       approaches_(directions_of(cloud.columns, "approach")),
-      squared_limit_(max_distance * max_distance),
-      squared_reach_(reach * reach * squared_limit_) {}
+      max_distance_(max_distance ? *max_distance : default_radii * neighbourhood_radius(tree_, threads)) {}
 
 double PointSamples::facing(u32 row, const Vec3& normal) const {
     double weight = 1;
@@ -85,20 +108,21 @@ double PointSamples::facing(u32 row, const Vec3& normal) const {
 }
 
 void PointSamples::find(const Vec3& position, const Vec3& normal, Samples& found) const {
+    const double squared_limit = max_distance_ * max_distance_, squared_reach = reach * reach * squared_limit;
     found.nearest = found.face = no_row;
     for (std::size_t count = neighbours;; count *= 2) {
         const std::span<const Neighbour> near = tree_.nearest_to(position, count, found.buffer);
-        found.is_near = near.front().squared <= squared_limit_;
+        found.is_near = near.front().squared <= squared_limit;
         found.samples.clear();
         for (const auto& [squared, index] : near) {
-            if (squared > squared_reach_) break;
+            if (squared > squared_reach) break;
             const std::span<const u32> rows = rows_[index];
             for (const u32 row : rows.first(std::min(rows.size(), most_at_one_position)))
                 if (const double weight = facing(row, normal); weight > 0)
                     found.samples.push_back({row, squared, weight});
         }
-        const bool is_all = near.size() < count || near.back().squared > squared_reach_;
-        if (found.samples.empty() ? is_all : found.samples.front().squared > squared_limit_) return;
+        const bool is_all = near.size() < count || near.back().squared > squared_reach;
+        if (found.samples.empty() ? is_all : found.samples.front().squared > squared_limit) return;
         // Beyond the positions that were found there may be the first that counts, or one as near as the nearest.
         if (is_all || (!found.samples.empty() && found.samples.front().squared < near.back().squared)) break;
     }
@@ -113,26 +137,17 @@ void PointSamples::find(const Vec3& position, const Vec3& normal, Samples& found
 }
 
 double PointSamples::colour_noise(const Column& colour, unsigned threads) const {
-    const std::size_t positions = tree_.positions().size();
-    if (positions < 2) return 0;
-    const std::size_t step = (positions - 1) / most_noise_samples + 1, count = (positions - 1) / step + 1;
-    Array<double> squares(count);
-    for_each_chunk(threads, count, 1024, [&](std::size_t begin, std::size_t end) {
-        NeighbourBuffer buffer;
-        for (std::size_t i = begin; i < end; ++i) {
-            const u32 index = static_cast<u32>(i * step), other = tree_.nearest(index, 1, buffer).front().index;
-            squares[i] = squared_colour_distance(colour, rows_[index].front(), rows_[other].front());
-        }
-    });
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    return std::sqrt(*middle);
+    if (tree_.positions().size() < 2) return 0;
+    return std::sqrt(median_of(tree_.positions().size(), threads, [&](u32 index, NeighbourBuffer& buffer) {
+        const u32 other = tree_.nearest(index, 1, buffer).front().index;
+        return squared_colour_distance(colour, rows_[index].front(), rows_[other].front());
+    }));
 }
 
-MeshSamples::MeshSamples(const TriangleMesh& mesh, double max_distance, unsigned threads)
+MeshSamples::MeshSamples(const TriangleMesh& mesh, std::optional<double> max_distance, unsigned threads)
     : tree_(mesh.positions.span(), mesh.triangles.span(), threads),
       triangles_(mesh.triangles),
-      max_distance_(max_distance) {}
+      max_distance_(max_distance ? *max_distance : default_spacings * edge_spacing(mesh)) {}
 
 void MeshSamples::find(const Vec3& position, const Vec3& normal, Samples& found) const {
     found.nearest = found.face = no_row;

@@ -43,7 +43,10 @@ Array<Vec3> normals_of(const TriangleMesh& mesh);
 
 class PointSamples {
 public:
-    PointSamples(const PointCloud& cloud, double max_distance, unsigned threads);
+    /// Without `max_distance`: 1.5 times the median distance of a position from its 12th nearest other one. These are 3
+    /// spacings of an evenly sampled surface, and still span the gaps between random samples.
+    PointSamples(const PointCloud& cloud, std::optional<double> max_distance, unsigned threads);
+    double max_distance() const { return max_distance_; }
 
     /// `normal`: the direction in which the position faces; 0 if unknown. Safe from several threads.
     void find(const Vec3& position, const Vec3& normal, Samples& found) const;
@@ -56,12 +59,14 @@ private:
     PointTree tree_;
     Lists<> rows_;  // by position
     Array<Vec3> normals_, approaches_;
-    double squared_limit_, squared_reach_;
+    double max_distance_;
 };
 
 class MeshSamples {
 public:
-    MeshSamples(const TriangleMesh& mesh, double max_distance, unsigned threads);
+    /// Without `max_distance`: 3 times the median edge.
+    MeshSamples(const TriangleMesh& mesh, std::optional<double> max_distance, unsigned threads);
+    double max_distance() const { return max_distance_; }
 
     void find(const Vec3& position, const Vec3& normal, Samples& found) const;
 

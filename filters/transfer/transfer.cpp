@@ -15,7 +15,6 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/spacing.hpp"
 #include "scanmill/filter/inputs.hpp"
 #include "transfer/samples.hpp"
 #include "transfer/srgb_curve.hpp"
@@ -30,7 +29,6 @@ constexpr std::string_view mark = "transferred";
 /// Similar colours, see transfer.hpp. With normally distributed noise, two samples of one colour are farther apart than
 /// 2.5 times the median in 0.2 % of all cases. Without noise, colours of smooth gradients are similar within the floor.
 constexpr double similar_medians = 2.5, similar_floor = 12.0 / 255;
-constexpr double default_spacings = 3;
 /// Share of the rows near `from` that may face away from it, as at thin parts of which one side was scanned.
 constexpr double doubtful_share = 0.05;
 constexpr std::size_t chunk = 1024;
@@ -111,14 +109,6 @@ void require_rows(const Column& column, std::size_t rows, std::string_view eleme
             .hint("a column needs one row per element");
 }
 
-double checked_distance(const TransferParams& params, double spacing) {
-    const double distance = params.max_distance ? params.max_distance->value() : default_spacings * spacing;
-    if (!params.max_distance && !(distance > 0))
-        throw Error("the spacing of `from` is 0, so max-distance needs a value")
-            .hint("give a length, such as `max-distance: 1 %diag`");
-    return distance;
-}
-
 void require_source(const PointCloud& from) { require_points(from, "transfer needs at least one in `from`"); }
 void require_source(const TriangleMesh& from) {
     require_triangles(from, "transfer needs at least one in `from`; points can be wired instead");
@@ -132,12 +122,11 @@ void require_target(const TriangleMesh& to) {
     require_finite(to.positions.span(), "vertices");
 }
 
-double spacing_of(const PointCloud& from) { return point_spacing(from.positions.span()); }
-double spacing_of(const TriangleMesh& from) { return edge_spacing(from); }
-
-PointSamples samples_of(const PointCloud& from, double distance, unsigned threads) { return {from, distance, threads}; }
-MeshSamples samples_of(const TriangleMesh& from, double distance, unsigned threads) {
-    return {from, distance, threads};
+PointSamples samples_of(const PointCloud& from, std::optional<double> max_distance, unsigned threads) {
+    return {from, max_distance, threads};
+}
+MeshSamples samples_of(const TriangleMesh& from, std::optional<double> max_distance, unsigned threads) {
+    return {from, max_distance, threads};
 }
 
 /// The squared distance within which two colours are similar. A mesh is interpolated, so all its colours are.
@@ -357,7 +346,7 @@ template <class From, class To>
 TransferResult<To> transfer(const From& from, const To& to, const TransferParams& params, Context& context) {
     if (params.max_distance && !(params.max_distance->value() > 0 && std::isfinite(params.max_distance->value())))
         throw Error("max-distance must be above 0; it is {:g} u", params.max_distance->value())
-            .hint("`auto` is 3 spacings of `from`");
+            .hint("`auto` is about 3 spacings of `from`");
     TransferResult<To> result;
     const std::vector<Carried> carried = carried_columns(from, params);
     const auto report = [&] {
@@ -381,10 +370,14 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
             require_rows(*column, from.size(), "points");
     }
     require_same_frame(from.frame, "`from` is", to.frame, "`to`");
-    result.max_distance = checked_distance(params, params.max_distance ? 0 : spacing_of(from));
-
     const unsigned threads = context.threads();
-    const auto source = samples_of(from, result.max_distance, threads);
+    std::optional<double> max_distance;
+    if (params.max_distance) max_distance = params.max_distance->value();
+    const auto source = samples_of(from, max_distance, threads);
+    result.max_distance = source.max_distance();
+    if (!(result.max_distance > 0))
+        throw Error("the spacing of `from` is 0, so max-distance needs a value")
+            .hint("give a length, such as `max-distance: 1 %diag`");
     context.check_cancelled();
     const Array<Vec3> normals = normals_of(to);
     const Vec3 shift = to.frame.origin - from.frame.origin;

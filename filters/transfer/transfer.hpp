@@ -24,7 +24,8 @@ struct TransferParams {
     /// Names of columns of `from`. Without a value: `colour` and `colour16`, if `from` has them.
     std::optional<std::vector<std::string>> columns;
     Method method = Method::blend;
-    /// Rows farther than this from `from` get no values; above 0. If absent, 3 spacings of `from`.
+    /// Rows farther than this from `from` get no values; above 0. If absent, about 3 spacings of `from`: see
+/// samples.hpp.
     std::optional<Length> max_distance;
     /// Whether rows of `to` that the column `filled` marks get values, too.
     bool filled = false;

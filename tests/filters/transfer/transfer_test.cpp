@@ -147,6 +147,19 @@ TEST(Transfer, MaxDistanceAuto_IsThreeSpacingsOfFrom) {
     EXPECT_THAT(numbers_in(result.result, "transferred"), ElementsAre(1, 0));
 }
 
+TEST(Transfer, MaxDistanceAuto_SpansTheGapsOfRandomSamples) {
+    Random random(4);
+    Array<Vec3> points, everywhere;
+    for (int i = 0; i < 4000; ++i) points.emplace_back(random.uniform(), random.uniform(), 0);
+    for (int x = 5; x <= 95; ++x)
+        for (int y = 5; y <= 95; ++y) everywhere.emplace_back(0.01 * x, 0.01 * y, 0);
+    PointCloud from, to;
+    from.positions = std::move(points);
+    to.positions = std::move(everywhere);
+    from = with(from, column_of<u8>("colour", 3, std::vector<u8>(12000, 50)));
+    EXPECT_EQ(carried(from, to, {}).unknown, 0u);
+}
+
 TEST(Transfer, FilledRows_GetNoColour_UnlessAskedFor) {
     const PointCloud from = with(cloud_of({{0, 0, 0}, {1, 1, 0}}), column_of<u8>("colour", 3, {9, 9, 9, 9, 9, 9}));
     TriangleMesh to = with(unit_square(), column_of<u8>("filled", 1, {0, 1, 0, 0}));
