@@ -65,7 +65,7 @@ reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculp
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features scanmill-cluster-mesh
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 # Filters of raw-scans.yaml and bernardini-1997-raw.yaml.
-raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
+raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes scanmill-transfer
 # Further filters of wang_hybrid.py.
 probing := scanmill-align scanmill-apply-transform scanmill-plate-corners scanmill-probe-planner scanmill-virtual-probe
 probing += scanmill-probe-compensate
