@@ -2,6 +2,7 @@
 #include "laz/laszip_record.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace scanmill::laz {
 
@@ -27,9 +28,17 @@ const LasRecord& require_record(const LasParts& parts) {
     return *found;
 }
 
+/// The type of a part, which damaged files set to numbers that the enumeration does not have.
+unsigned type_of(const LASitem& item) {
+    unsigned type = 0;
+    static_assert(sizeof item.type == sizeof type);
+    std::memcpy(&type, &item.type, sizeof type);
+    return type;
+}
+
 /// The name of a part of a point in the specification of LAZ; its number if it has none.
 std::string name_of(const LASitem& item) {
-    switch (item.type) {
+    switch (type_of(item)) {
         case LASitem::BYTE: return "BYTE";
         case LASitem::POINT10: return "POINT10";
         case LASitem::GPSTIME11: return "GPSTIME11";
@@ -40,7 +49,7 @@ std::string name_of(const LASitem& item) {
         case LASitem::RGBNIR14: return "RGBNIR14";
         case LASitem::WAVEPACKET14: return "WAVEPACKET14";
         case LASitem::BYTE14: return "BYTE14";
-        default: return "of type " + std::to_string(static_cast<int>(item.type));
+        default: return "of type " + std::to_string(type_of(item));
     }
 }
 
@@ -88,7 +97,7 @@ void require_items(const LASzip& laszip, const LasHeader& header) {
                       std::to_string(expected.num_items));
     for (U16 i = 0; i < laszip.num_items; ++i) {
         const LASitem &item = laszip.items[i], &wanted = expected.items[i];
-        if (item.type != wanted.type || item.size != wanted.size)
+        if (type_of(item) != type_of(wanted) || item.size != wanted.size)
             refuse_layout(fmt::format("the part {} of {} bytes instead of {} of {}", name_of(item), item.size,
                                       name_of(wanted), wanted.size));
         if (!is_known(item))
