@@ -221,14 +221,16 @@ void test_motions(Views views, const Transforms& given, const RegisterParams& pa
     for (std::size_t i = 0; i < placed.size(); ++i)
         to_test.views[i].start =
             local(given.motions[i], placed[i]->frame.origin, placed[0]->frame.origin, placed[0]->frame.unit);
+    const bool sides_are_known = to_test.assumed.empty() && to_test.estimated.empty();
     std::vector<std::string> misplaced;
     try {
         double spacing = 0;
         for (const auto& [view, distance] : misplaced_views(to_test.views, options_of(params), spacing, context))
-            misplaced.push_back(distance ? fmt::format("'{}' fits them {:.3g} {} ({:.1f} spacings) away from its pose",
-                                                       names[view], *distance, symbol(placed[0]->frame.unit),
-                                                       *distance / spacing)
-                                         : fmt::format("lines of sight contradict '{}'", names[view]));
+            if (distance || sides_are_known)
+                misplaced.push_back(
+                    distance ? fmt::format("'{}' fits them {:.3g} {} ({:.1f} spacings) away from its pose", names[view],
+                                           *distance, symbol(placed[0]->frame.unit), *distance / spacing)
+                             : fmt::format("lines of sight contradict '{}'", names[view]));
     } catch (const Error&) {
         return;  // equal views, or views without a surface, cannot be tested
     }

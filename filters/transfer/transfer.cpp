@@ -391,7 +391,7 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
         context.check_cancelled();
         Samples found;
         for (std::size_t row = begin; row < end; ++row) {
-            if (filled && filled->number(row) != 0) {
+            if (filled && filled->number(row) == 1) {
                 outcomes[row] = Outcome::filled;
             } else {
                 source.find(to.positions[row] + shift, normals.empty() ? Vec3(Vec3::Zero()) : normals[row], found);
@@ -414,6 +414,10 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
         throw Error("none of the {} of `to` is within {:.4g} u of `from`", count_text(result.unknown, "row", "rows"),
                     result.max_distance)
             .hint("check that both are in one place, or raise max-distance");
+    if (result.filled == rows)
+        context.doubt(fmt::format(
+            "the column `filled` marks all of `to` ({}), so none has values; `filled: true` gives them values",
+            count_text(rows, "row", "rows")));
     const std::size_t near = result.transferred + result.facing_away;
     if (static_cast<double>(result.facing_away) > doubtful_share * static_cast<double>(near))
         context.doubt(

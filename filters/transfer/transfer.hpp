@@ -72,7 +72,7 @@ struct TransferResult {
 /// column have the same name, the vertex column is carried.
 ///
 /// Rows without values: rows with nothing of `from` within `max_distance` that counts, and rows whose column `filled`
-/// is not 0, unless params.filled. Their values are neutral: the middle grey (128, or 32896 of uint16) with full alpha
+/// is 1, unless params.filled. Their values are neutral: the middle grey (128, or 32896 of uint16) with full alpha
 /// for colours, an empty list, 0 for all others.
 ///
 /// Pre:  finite coordinates; one unit and one frame (origins may differ); `from` has points or triangles, `to` has

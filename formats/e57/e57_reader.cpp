@@ -262,6 +262,12 @@ private:
     }
 
     static Vec3 from_spherical(const Vec3& numbers) {
+        constexpr double steepest = std::numbers::pi / 2 + 1e-6;
+        if (numbers[0] < 0) throw Error("a point has the range {:.6g} m; ranges are positive", numbers[0]);
+        if (std::abs(numbers[2]) > steepest)
+            throw Error("a point has the elevation {:.6g}; elevations are angles in radians, from -1.5708 to 1.5708",
+                        numbers[2])
+                .hint("export it again, with angles in radians");
         const auto [cosine, sine] = turn(numbers[1]);
         const auto [cosine_up, sine_up] = turn(numbers[2]);
         const double across = numbers[0] * cosine_up;

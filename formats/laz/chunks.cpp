@@ -83,8 +83,17 @@ std::vector<Chunk> chunks_of(const LasParts& parts, const LASzip& laszip) {
     const std::vector<Entry> entries = read_entries(parts, laszip, address);
     std::vector<Chunk> chunks;
     u64 at = header.points_begin + address_size, points = 0;
-    for (std::size_t i = 0; i < entries.size() && points < header.points; ++i) {
+    const auto is_filled = [&](const Entry& entry) {
+        return entry.size > 0 && (entry.points > 0 || !has_chunk_counts(laszip));
+    };
+    for (std::size_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = entries[i];
+        if (points == header.points) {
+            if (!is_filled(entry)) continue;
+            throw Error("promises {}; they end with chunk {} of {}", count_text(header.points, "point", "points"), i,
+                        count_text(entries.size(), "chunk", "chunks"))
+                .hint(interrupted_hint);
+        }
         if (entry.size < header.point_size || entry.size > address - at)
             throw Error("chunk {} of {} would have {} from byte {} on; the table of chunks begins at byte {}", i + 1,
                         entries.size(), count_text(entry.size, "byte", "bytes"), at, address)

@@ -338,7 +338,7 @@ int run_workflow(const RunOptions& options) {
     std::vector<ObjectFolder> objects;
     for (const std::string& scan : options.scans)
         if (std::error_code ignored; takes_views(checked.plan.workflow) && std::filesystem::is_directory(scan, ignored))
-            objects.push_back(object_in(scan));
+            objects.push_back(object_in(scan, print_warning));
         else
             request.scans.emplace_back(scan);
     request.inputs = parse_inputs(options.inputs);

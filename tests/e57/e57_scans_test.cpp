@@ -96,6 +96,15 @@ TEST(E57Reader, SphericalCoordinates_FollowTheStandard) {
     EXPECT_NEAR(directions[5], 1, 1e-6) << "the scanner is above the second point";
 }
 
+TEST(E57Reader, SphericalCoordinatesOutOfRange_AreRefused) {
+    const auto file = [](double range, double elevation) {
+        return e57_file({{{reals("sphericalRange", {1, range}), reals("sphericalAzimuth", {0, 0}),
+                           reals("sphericalElevation", {0, elevation})}}});
+    };
+    EXPECT_THAT(refusal_of(file(1, 45), "a.e57"), HasSubstr("elevation 45; elevations are angles in radians"));
+    EXPECT_THAT(refusal_of(file(-2, 0), "a.e57"), HasSubstr("the range -2 m"));
+}
+
 TEST(E57Reader, Approach_IsTurnedByThePose_AndNeedsAGrid) {
     E57Scan scan{cartesian({{2, 0, 0}}), half_turn};
     EXPECT_EQ(points_in(e57_file({scan}), "a.e57")->columns.find("approach"), nullptr);

@@ -212,5 +212,25 @@ TEST_F(Objects, FileOfSeveralViews_IsAllOfThem) {
     EXPECT_EQ(cloud->columns.find("source")->number(15), 2) << "three views";
 }
 
+TEST_F(Objects, Results_AreNoObject_AndNoViews) {
+    write_object("o1", 2);
+    write_objects("{path: \"*/*.ply\", by: folder}");
+    EXPECT_EQ(scanmill({"batch", "b.yaml", "-o", "results"}).exit_code, 0);
+    const ProgramResult again = scanmill({"batch", "b.yaml", "-o", "results"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_THAT(again.err, HasSubstr("'results' holds results (scanmill.sqlite), and is no object"));
+    const ProgramResult named = run({"results"});
+    EXPECT_EQ(named.exit_code, 2);
+    EXPECT_THAT(named.err, HasSubstr("'results' holds results (scanmill.sqlite), which are no views"));
+}
+
+TEST_F(Objects, ATextBesideOtherViews_IsNoView) {
+    write_object("o1", 2);
+    folder_.write("o1/README.txt", "Views of the first day\n");
+    const ProgramResult ran = run({"o1"});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("'o1/README.txt' is not taken as a view"));
+}
+
 }  // namespace
 }  // namespace scanmill::test

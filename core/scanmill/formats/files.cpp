@@ -20,6 +20,15 @@ bool is_marked_text(std::string_view bytes) {
     return text.size() < head.size() && (text.starts_with("ply") || text.find('\0') == std::string_view::npos);
 }
 
+std::string before_mark(const std::filesystem::path& path) { return path.string().substr(0, path.string().rfind('#')); }
+
+/// Whether there is no such file, but one with the name before the last '#'.
+bool is_view_of_a_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return path.string().find('#') != std::string::npos && !std::filesystem::exists(path, ignored) &&
+           std::filesystem::is_regular_file(before_mark(path), ignored);
+}
+
 /// `options.on_warning`, with the file's name before each sentence if the options ask for it.
 OnWarning warnings_of(const std::filesystem::path& path, const ReadOptions& options) {
     return options.names_file ? warnings_with_file_name(path, options.on_warning) : options.on_warning;
@@ -76,6 +85,8 @@ Format::Write writer_for(const std::filesystem::path& path, const Value& value) 
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options) {
     return with_file_name(path, [&] {
         const FileView source = file_view(path);
+        if (is_view_of_a_file(source.file))
+            throw Error("there is no such view").hint("views are counted from 1: " + before_mark(path) + "#1");
         const MappedFile file(source.file);
         ReadOptions of_view = options;
         if (source.view > 0) of_view.view = source.view;

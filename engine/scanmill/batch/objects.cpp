@@ -10,6 +10,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/poses/poses.hpp"
+#include "scanmill/plan/output_names.hpp"
 
 namespace scanmill {
 
@@ -90,8 +91,9 @@ std::string misfit(const std::vector<ScanPose>& poses, const fs::path& file, con
     for (const ScanPose& pose : poses)
         if (!pose.refused && std::ranges::none_of(object.views, [&](const fs::path& view) { return fits(pose, view); }))
             return fmt::format(
-                "'{}' has a pose of '{}', which is not among the {} of the object '{}'; add the view, or remove its "
-                "pose",
+                "'{}' has a pose of '{}', which is not among the {} of the object '{}'; add the view, remove its pose, "
+                "or "
+                "set the parameter `poses` to this file, which passes over poses of other views",
                 file.string(), pose.scan, count_text(views.size(), "view", "views"), object.name());
     return {};
 }
@@ -110,10 +112,27 @@ std::vector<ObjectFolder> objects_of(std::span<const fs::path> files) {
     return objects;
 }
 
-ObjectFolder object_in(const fs::path& folder) {
+bool has_results(const ObjectFolder& object) {
+    std::error_code ignored;
+    return fs::exists(object.folder / records_file, ignored);
+}
+
+ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
     ObjectFolder object{with_name(folder), {}};
+    if (has_results(object))
+        throw Error("the folder '{}' holds results ({}), which are no views of an object", object.folder.string(),
+                    records_file)
+            .hint("name a folder with the views alone, and another one for the results: -o DIR");
     const Listed found = listed(object.folder);
     std::ranges::copy_if(found.files, std::back_inserter(object.views), may_be_view);
+    const auto is_text = [](const fs::path& file) { return extension_of(file) == "txt"; };
+    if (!std::ranges::all_of(object.views, is_text))
+        std::erase_if(object.views, [&](const fs::path& file) {
+            if (is_text(file) && warn)
+                warn(fmt::format("'{}' is not taken as a view, because other files beside it are no texts",
+                                 file.string()));
+            return is_text(file);
+        });
     if (object.views.empty())
         throw Error("the folder '{}' has no views: {}", object.folder.string(),
                     found.files.empty() ? "it has no files"

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scanmill/formats/common/format.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
 namespace scanmill {
@@ -28,9 +29,13 @@ struct ObjectFolder {
 /// The objects with these views: files in one folder belong to one object. In the order of their first files.
 std::vector<ObjectFolder> objects_of(std::span<const std::filesystem::path> files);
 
+/// Whether a run wrote its results into the folder: they are no views.
+bool has_results(const ObjectFolder& object);
+
 /// The object of a folder. All its files with the extension of a format of points or meshes are views; hidden files are
-/// not. Throws Error if there are none, or if the folder cannot be read.
-ObjectFolder object_in(const std::filesystem::path& folder);
+/// not, and beside other views texts (.txt) are not, with a warning. Throws Error if there are none, if has_results(),
+/// or if the folder cannot be read.
+ObjectFolder object_in(const std::filesystem::path& folder, const OnWarning& warn = {});
 
 /// The file with the poses of an object's views, or the reason why its cells fail. Both are empty without poses.
 struct ObjectPoses {

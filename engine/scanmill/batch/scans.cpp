@@ -14,6 +14,7 @@
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/poses/poses.hpp"
 #include "scanmill/io/mapped_file.hpp"
+#include "scanmill/plan/output_names.hpp"
 #include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {
@@ -383,6 +384,11 @@ private:
                                    "'{}' is in the folder of the batch file; with `by: folder`, every object has a "
                                    "folder of its own, as in objects/*/*.ply",
                                    object.views.front().string());
+                continue;
+            }
+            if (has_results(object)) {
+                diagnostics_.warning(position, fmt::format("the folder '{}' holds results ({}), and is no object",
+                                                           object.folder.string(), records_file));
                 continue;
             }
             if (!is_new(object.folder, position, "; give all views of an object in one entry")) continue;

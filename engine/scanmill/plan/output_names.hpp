@@ -12,6 +12,9 @@
 
 namespace scanmill {
 
+/// The records of all runs in an output folder.
+inline constexpr const char* records_file = "scanmill.sqlite";
+
 /// The folder below the output folder that gets the outputs of cells that failed by an expectation.
 inline constexpr std::string_view failed_folder_name = "failed";
 

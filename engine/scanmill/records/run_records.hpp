@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "scanmill/plan/output_names.hpp"
 #include "scanmill/report/run_report.hpp"
 
 namespace scanmill {
@@ -40,9 +41,6 @@ struct PastStep {
     Texts authored;
     bool done = true;  ///< false: the step failed or was skipped
 };
-
-/// Name of the records file in an output folder.
-inline constexpr const char* records_file = "scanmill.sqlite";
 
 class RunRecords {
 public:

@@ -160,6 +160,17 @@ TEST(Transfer, MaxDistanceAuto_SpansTheGapsOfRandomSamples) {
     EXPECT_EQ(carried(from, to, {}).unknown, 0u);
 }
 
+TEST(Transfer, WhereAllIsMarkedAsFilled_TheResultIsDoubtful) {
+    const PointCloud from = with(cloud_of({{0, 0, 0}, {1, 0, 0}}), column_of<u8>("colour", 3, std::vector<u8>(6, 50)));
+    Context context;
+    transfer(from, with(cloud_of({{0, 0, 0}}), column_of<u8>("filled", 1, {1})), {}, context);
+    ASSERT_EQ(context.doubts().size(), 1u);
+    Context other;
+    const auto marked_otherwise =
+        transfer(from, with(cloud_of({{0, 0, 0}}), column_of<u8>("filled", 1, {2})), {}, other);
+    EXPECT_EQ(marked_otherwise.transferred, 1u) << "only 1 is the mark";
+}
+
 TEST(Transfer, FilledRows_GetNoColour_UnlessAskedFor) {
     const PointCloud from = with(cloud_of({{0, 0, 0}, {1, 1, 0}}), column_of<u8>("colour", 3, {9, 9, 9, 9, 9, 9}));
     TriangleMesh to = with(unit_square(), column_of<u8>("filled", 1, {0, 1, 0, 0}));

@@ -105,6 +105,9 @@ TEST(LazChunks_FewerPointsThanPromised, IsReported) {
     std::string bytes = laz_file(noisy_points(3, 173));
     put_at(bytes, 247, u64(4000000000));
     EXPECT_THAT(refused(bytes), HasSubstr("promises 4000000000 points; its 4 chunks hold 200"));
+    bytes = laz_file(noisy_points(3, 173));
+    put_at(bytes, 247, u64(100));
+    EXPECT_THAT(refused(bytes), HasSubstr("promises 100 points; they end with chunk 2 of 4"));
     bytes = laz_file(noisy_points(7, 100), {.chunks = {60, 40}});
     put_at(bytes, 247, u64(101));
     EXPECT_THAT(refused(bytes), HasSubstr("promises 101 points; its 2 chunks hold 100"));
