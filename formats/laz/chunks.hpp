@@ -24,7 +24,8 @@ struct Chunk {
 };
 
 /// The chunks that hold the points that the header declares, in order. The last one may hold more points. Throws Error
-/// if the table of chunks is missing or damaged, or if the chunks hold fewer points.
+/// if the table of chunks is missing or damaged, if the chunks hold fewer points, or if the points end before the last
+/// chunk.
 /// Cost: memory in proportion to the size of the file, whatever the table declares.
 std::vector<Chunk> chunks_of(const LasParts& parts, const LASzip& laszip);
 
