@@ -102,6 +102,16 @@ std::vector<Carried> carried_columns(const From& from, const TransferParams& par
     return carried;
 }
 
+/// Warns of colours that are columns of their own, as files with channels of more than a byte have them.
+template <class From>
+void warn_of_channels(const From& from, Context& context) {
+    for (const char* name : {"red", "green", "blue"})
+        if (!find_column(from, name)) return;
+    context.warn(
+        "`from` has no column 'colour', but 'red', 'green' and 'blue', which are not taken as colours; `columns: [red, "
+        "green, blue]` carries them as numbers");
+}
+
 void require_rows(const Column& column, std::size_t rows, std::string_view elements) {
     if (column.rows() != rows)
         throw Error("the column '{}' has {}, but there are {} {}", column.name(),
@@ -356,6 +366,7 @@ TransferResult<To> transfer(const From& from, const To& to, const TransferParams
         context.metric("max-distance", result.max_distance, Unit::length);
     };
     if (carried.empty()) {
+        warn_of_channels(from, context);
         result.result = to;
         report();
         return result;

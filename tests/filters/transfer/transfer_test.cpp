@@ -160,6 +160,15 @@ TEST(Transfer, MaxDistanceAuto_SpansTheGapsOfRandomSamples) {
     EXPECT_EQ(carried(from, to, {}).unknown, 0u);
 }
 
+TEST(Transfer, ChannelsThatAreNoColour_AreWarnedOf) {
+    PointCloud from = cloud_of({{0, 0, 0}, {1, 0, 0}});
+    for (const char* name : {"red", "green", "blue"}) from = with(from, column_of<float>(name, 1, {0.5f, 1}));
+    Context context;
+    EXPECT_EQ(transfer(from, cloud_of({{0, 0, 0}}), {}, context).transferred, 0u);
+    ASSERT_EQ(context.warnings().size(), 1u);
+    EXPECT_THAT(context.warnings()[0], HasSubstr("'red', 'green' and 'blue'"));
+}
+
 TEST(Transfer, WhereAllIsMarkedAsFilled_TheResultIsDoubtful) {
     const PointCloud from = with(cloud_of({{0, 0, 0}, {1, 0, 0}}), column_of<u8>("colour", 3, std::vector<u8>(6, 50)));
     Context context;
