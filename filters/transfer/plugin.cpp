@@ -10,8 +10,8 @@ SCANMILL_FILTER() {
         .summary("Carries columns, above all colours, from one cloud or mesh to the points or vertices of another.")
         .source("Callieri et al. 2008 for the weights; Comaniciu, Meer 2002 for the mode of the colours; IEC 61966-2-1")
         .ties(
-            "Of equally near points, corners and triangles, the one with the lowest row counts. Of colours with equal "
-            "weight, the nearer one counts.")
+            "Among equally near points, corners and triangles, the one with the lowest row counts; among colours with "
+            "equal weight, the nearer one.")
         .not_finite(
             "Coordinates: refused, with their number and the first of them. Values: left out of means; a row without "
             "others keeps that of the nearest point.")
@@ -32,11 +32,10 @@ SCANMILL_FILTER() {
                word("colour"))
         .choice("method", &P::method,
                 {{"nearest", P::Method::nearest,
-                  "The values of the nearest point; of a mesh, of the nearest corner of the nearest triangle."},
+                  "The values of the nearest point; with a mesh, of the nearest corner of the nearest triangle."},
                  {"blend", P::Method::blend,
-                  "Of points, the weighted mean of near ones; of colours, only of those similar to most, so that edges "
-                  "stay sharp. Of a mesh, the value at its nearest point. Integers other than colours are as with "
-                  "`nearest`."}},
+                  "The weighted mean of near points, for colours of those similar to most, so that edges stay sharp; "
+                  "with a mesh, the value at its nearest point. Integers other than colours are as with `nearest`."}},
                 "How values are found.")
         .param("max-distance", &P::max_distance,
                "Rows of `to` that are farther from `from` get no values. `auto` is 1.5 times the median distance of a "

@@ -28,7 +28,7 @@ namespace scanmill {
 struct ScanFile {
     ScanFile(std::filesystem::path file) : path(std::move(file)) {}
 
-    /// A file, or the name of one of its views (see file_view()). Of an object, its folder.
+    /// A file, or the name of one of its views (see file_view()). The folder of an object.
     std::filesystem::path path;
     /// The views of an object, which feed the workflow's first input in one run.
     std::vector<ScanFile> views;
