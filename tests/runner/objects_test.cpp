@@ -224,6 +224,16 @@ TEST_F(Objects, Results_AreNoObject_AndNoViews) {
     EXPECT_THAT(named.err, HasSubstr("'results' holds results (scanmill.sqlite), which are no views"));
 }
 
+TEST_F(Objects, ViewsBesideTheBatch_AreRefused_HoweverTheBatchIsNamed) {
+    write_view("v1.ply");
+    write_objects("{path: \"*.ply\", by: folder}");
+    for (const char* name : {"b.yaml", "./b.yaml"}) {
+        const ProgramResult checked = scanmill({"check", name});
+        EXPECT_EQ(checked.exit_code, 2) << name;
+        EXPECT_THAT(checked.err, HasSubstr("v1.ply' is in the folder of the batch file")) << name;
+    }
+}
+
 TEST_F(Objects, ATextBesideOtherViews_IsNoView) {
     write_object("o1", 2);
     folder_.write("o1/README.txt", "Views of the first day\n");

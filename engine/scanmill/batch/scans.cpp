@@ -378,8 +378,11 @@ private:
     }
 
     void add_objects(const std::vector<ObjectFolder>& objects, Position position) {
+        const auto normal = [](const fs::path& folder) {
+            return (folder.empty() ? fs::path(".") : folder).lexically_normal();
+        };
         for (const ObjectFolder& object : objects) {
-            if (object.folder.lexically_normal() == folder_.lexically_normal()) {
+            if (normal(object.folder) == normal(folder_)) {
                 diagnostics_.error(position,
                                    "'{}' is in the folder of the batch file; with `by: folder`, every object has a "
                                    "folder of its own, as in objects/*/*.ply",
