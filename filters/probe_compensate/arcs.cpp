@@ -12,8 +12,8 @@ namespace scanmill::compensating {
 namespace {
 
 constexpr double sqrt_half = std::numbers::sqrt2 / 2;
-constexpr double most_ratio = 4;  ///< of the distances between three points of one circle
-constexpr double most_parts = 64;  ///< of one chord
+constexpr double most_ratio = 4;  ///< between the two distances of three points on one circle
+constexpr double most_parts = 64;  ///< into which a chord is divided
 
 /// A circle through two points a and b, as the height of its arc over their chord.
 struct ArcOverChord {

@@ -18,8 +18,7 @@ struct WholeLines {
 
 /// Leaves out creases that lie beside a line that stays, or branch off it, and joins the others where only two ends
 /// meet:
-/// 1. Cells. A crease and the shortest way round from one of its ends to the other are a cell if two conditions are
-/// met.
+/// 1. Cells. A crease and the shortest way round from one of its ends to the other are a cell on two conditions.
 ///    They are nearer to each other than 2 `error` everywhere, and the way is longer by less than 4 `error`. Such cells
 ///    lie between the two sides of a bevel. A crease from a vertex to itself is a cell if it is shorter than 4 `error`.
 ///    A cell opens at a crease that is in no other cell. A crease on a side of the bevel, in one cell from the start,

@@ -56,7 +56,7 @@ std::vector<MisplacedView> misplaced_views(std::span<const ViewToRegister> views
             view.given.push_back(views[i].start->apply(points[row]));
         }
     }
-    if (placed.size() < 3) return result;  // of two views, neither is the wrong one
+    if (placed.size() < 3) return result;  // two views do not show which one is wrong
     RigidMotion motion = motion_of(placed);
     for (int round = 0; round < rounds; ++round) {
         std::ranges::stable_sort(placed, {}, [&](const Placed& view) { return view.distance(motion); });

@@ -16,7 +16,7 @@ struct MisplacedView {
 
 /// Refines the poses `start` of all views, brings the result onto the given poses so that the better half of the views
 /// moves least, and returns the views that still move: by more than half a spacing, and by more than 3 times the median
-/// of all views. Also returns views whose given pose the lines of sight contradict. Views that overlap too little, or
+/// distance. Also returns views whose given pose the lines of sight contradict. Views that overlap too little, or
 /// slide on the others, cannot be tested, and are not returned.
 ///
 /// `spacing` receives the median spacing of the views. Pre: as for register_views(), and all views have `start`. Throws

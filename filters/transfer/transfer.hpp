@@ -24,8 +24,7 @@ struct TransferParams {
     /// Names of columns of `from`. Without a value: `colour` and `colour16`, if `from` has them.
     std::optional<std::vector<std::string>> columns;
     Method method = Method::blend;
-    /// Rows farther than this from `from` get no values; above 0. If absent, about 3 spacings of `from`: see
-/// samples.hpp.
+    /// Rows farther than this from `from` get no values; above 0. If absent, about 3 spacings: see samples.hpp.
     std::optional<Length> max_distance;
     /// Whether rows of `to` that the column `filled` marks get values, too.
     bool filled = false;
@@ -53,7 +52,7 @@ struct TransferResult {
 /// be below about 100 degrees (cosine above -0.2, as normals have noise). A direction that is missing, 0 or NaN allows
 /// every side.
 ///
-/// Points, blend. The samples of a row are the points at the 12 nearest positions that count. The nearest must be
+/// Points, blend. The samples of a row are the points among the 12 nearest positions that count. The nearest must be
 /// within `max_distance`, the others within four times that. If none of the 12 counts, more positions are searched. A
 /// sample at distance d has the weight (1 - d² / r²), where r is slightly beyond the farthest of them, times the
 /// cosines to its normal and to its `approach` (at least 0.05 each).

@@ -12,7 +12,7 @@
 /// the colour limits allow bytes, `colour16` (3 × uint16) for larger integers, and bytes scaled from the limits for
 /// other numbers. `normal` from the extension nor:normalX, Y, Z, turned by the pose. Every other field keeps its name
 /// in lower case: `row_index`, `column_index`, `time_stamp`, `return_index`, `return_count`, … Flags
-/// (`intensity_invalid`, `color_invalid`, `time_stamp_invalid`) are kept if a point has them set; the values that they
+/// (`intensity_invalid`, `colour_invalid`, `time_stamp_invalid`) are kept if a point has them set; the values that they
 /// belong to are kept as stored. Integers have the smallest type that holds their declared range, scaled integers are
 /// float64, floats keep their precision. `approach` (3 × float32) is the unit vector to the scanner, at the scan's own
 /// origin; it is present if the scan has rows and columns or spherical coordinates, because other scans may be merged

@@ -8,7 +8,7 @@
 ///
 /// Errors: a missing, unknown or contradictory record of LASzip; a missing, truncated or damaged table of chunks; a
 /// damaged chunk; fewer points than the header declares. A chunk is damaged if its decoder needs more or fewer bytes
-/// than the table of chunks gives it. More points than the header declares are ignored.
+/// than the table of chunks gives it. The points must not end before the last chunk; further points in it are ignored.
 ///
 /// Streams, see open_las_stream(): the points are restored once, on all threads. Files of method 1 have one run of
 /// points, which one thread restores.

@@ -218,10 +218,10 @@ TEST_F(Objects, Results_AreNoObject_AndNoViews) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "-o", "results"}).exit_code, 0);
     const ProgramResult again = scanmill({"batch", "b.yaml", "-o", "results"});
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_THAT(again.err, HasSubstr("'results' holds results (scanmill.sqlite), and is no object"));
+    EXPECT_THAT(again.err, HasSubstr("'results' holds results (scanmill.sqlite), so it is not taken as an object"));
     const ProgramResult named = run({"results"});
     EXPECT_EQ(named.exit_code, 2);
-    EXPECT_THAT(named.err, HasSubstr("'results' holds results (scanmill.sqlite), which are no views"));
+    EXPECT_THAT(named.err, HasSubstr("'results' holds results (scanmill.sqlite), which do not count as views"));
 }
 
 TEST_F(Objects, ViewsBesideTheBatch_AreRefused_HoweverTheBatchIsNamed) {

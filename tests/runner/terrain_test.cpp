@@ -13,7 +13,6 @@
 #include "scanmill/formats/files.hpp"
 #include "support/folders.hpp"
 #include "support/program.hpp"
-#include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {

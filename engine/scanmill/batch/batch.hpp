@@ -51,8 +51,8 @@ struct BatchInput {
 
 /// A scan, or an object of several views.
 struct BatchScan {
-    std::filesystem::path file;  ///< of an object, its folder
-    std::vector<std::filesystem::path> views;  ///< of an object, sorted by name; empty for a scan
+    std::filesystem::path file;  ///< the folder, if this is an object
+    std::vector<std::filesystem::path> views;  ///< the files of an object, sorted by name; empty for a scan
     Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
     /// For a scan with {stem} replaced; for an object as written, to be replaced for each view. Empty: from the

@@ -120,7 +120,7 @@ bool has_results(const ObjectFolder& object) {
 ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
     ObjectFolder object{with_name(folder), {}};
     if (has_results(object))
-        throw Error("the folder '{}' holds results ({}), which are no views of an object", object.folder.string(),
+        throw Error("the folder '{}' holds results ({}), which do not count as views", object.folder.string(),
                     records_file)
             .hint("name a folder with the views alone, and another one for the results: -o DIR");
     const Listed found = listed(object.folder);
@@ -129,7 +129,7 @@ ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
     if (!std::ranges::all_of(object.views, is_text))
         std::erase_if(object.views, [&](const fs::path& file) {
             if (is_text(file) && warn)
-                warn(fmt::format("'{}' is not taken as a view, because other files beside it are no texts",
+                warn(fmt::format("'{}' is not taken as a view, because it is a text among files of other formats",
                                  file.string()));
             return is_text(file);
         });

@@ -29,7 +29,7 @@ struct ObjectFolder {
 /// The objects with these views: files in one folder belong to one object. In the order of their first files.
 std::vector<ObjectFolder> objects_of(std::span<const std::filesystem::path> files);
 
-/// Whether a run wrote its results into the folder: they are no views.
+/// Whether a run wrote its results into the folder. They do not count as views.
 bool has_results(const ObjectFolder& object);
 
 /// The object of a folder. All its files with the extension of a format of points or meshes are views; hidden files are

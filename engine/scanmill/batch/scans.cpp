@@ -390,8 +390,9 @@ private:
                 continue;
             }
             if (has_results(object)) {
-                diagnostics_.warning(position, fmt::format("the folder '{}' holds results ({}), and is no object",
-                                                           object.folder.string(), records_file));
+                diagnostics_.warning(position,
+                                     fmt::format("the folder '{}' holds results ({}), so it is not taken as an object",
+                                                 object.folder.string(), records_file));
                 continue;
             }
             if (!is_new(object.folder, position, "; give all views of an object in one entry")) continue;
@@ -506,7 +507,9 @@ private:
             std::string text;
             text_into(text, diagnostics_)(found);
             check_stem_template(text, "the frame", found.value.position, diagnostics_);
-            for (BatchScan& scan : scans) scan.truth.frame = with_stem(text, scan.file);
+            for (BatchScan& scan : scans)
+                scan.truth.frame =
+                    with_placeholders(text, [&](const std::string& each) { return value_of(scan, each); });
         };
         read_mapping(entry.value, "a truth",
                      {{"path", [&](const YamlEntry& found) { path(found.value); },

@@ -117,8 +117,8 @@ struct FileView {
     std::filesystem::path file;
     u32 view = 0;  ///< from 1; 0: the whole file
 };
-/// What users mean by a name: the view 2 of a.e57 by "a.e57#2", if there is no file of that name and a.e57 is a file.
-/// Otherwise the file `name`.
+/// Splits the name of a view: "a.e57#2" is view 2 of a.e57, if there is no file of that name and a.e57 is a file. Any
+/// other name is that of a file.
 FileView file_view(const std::filesystem::path& name);
 /// The name that file_view() splits: "a.e57#2". The file itself for view 0.
 std::filesystem::path view_name(const std::filesystem::path& file, u32 view);
