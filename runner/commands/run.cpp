@@ -17,6 +17,7 @@
 #include "output/progress.hpp"
 #include "output/reproduce.hpp"
 #include "output/run_output.hpp"
+#include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
@@ -36,7 +37,8 @@ struct ExecuteOptions {
     SessionSettings session;
     CacheOptions cache;
     std::uint64_t seed = 0;
-    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false;
+    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false,
+         is_wide = false;
 };
 
 struct RunOptions {
@@ -138,6 +140,8 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, then stop");
     command.add_flag("-q,--quiet", options.quiet, "Print no progress on stderr");
+    command.add_flag("--wide", options.is_wide,
+                     "Print every headline metric of every step and every file, however wide the table gets");
 }
 
 /// Opens the cache. Returns nullptr with --no-cache, and with a warning if the cache folder cannot be opened.
@@ -272,7 +276,9 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     } else if (options_.json) {
         print_json(report_json(graph, report));
     } else {
-        fmt::print("{}", report_text(graph, report, stdout_width()));
+        fmt::print("{}",
+                   run_table(graph, report, options_.is_wide ? TableExtent::everything : TableExtent::result,
+                             stdout_width()));
         if (comparison) fmt::print("{}", verdict_text(*comparison, options_.session.output_folder));
     }
     if (report.interrupted) {
