@@ -25,7 +25,6 @@
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
-#include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
@@ -380,7 +379,7 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     for (const std::filesystem::path& path : scan.views) {
         ScanFile view(path);
         view.unit = scan.unit;
-        view.frame = with_stem(scan.frame, path);
+        view.frame = scan.frame;
         view.refusal = scan.refusal;
         view.invalid = scan.invalid;
         file.views.push_back(std::move(view));

@@ -55,9 +55,7 @@ struct BatchScan {
     std::vector<std::filesystem::path> views;  ///< the files of an object, sorted by name; empty for a scan
     Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    /// For a scan with {stem} replaced; for an object as written, to be replaced for each view. Empty: from the
-    /// workflow or the file.
-    std::string frame;
+    std::string frame;  ///< as written; {stem} is that of each view. Empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
     std::string refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run

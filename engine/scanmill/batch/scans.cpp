@@ -315,7 +315,7 @@ private:
             std::string text;
             text_into(text, diagnostics_)(found);
             check_stem_template(text, "the frame", found.value.position, diagnostics_);
-            for (BatchScan& scan : scans()) scan.frame = scan.is_object() ? text : with_stem(text, scan.file);
+            for (BatchScan& scan : scans()) scan.frame = text;
         };
         const auto invalid = [&](const YamlEntry& found) {
             InvalidRows rule = InvalidRows::by_format;

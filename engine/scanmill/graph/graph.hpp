@@ -33,8 +33,10 @@ struct ScanFile {
     /// The views of an object, which feed the workflow's first input in one run.
     std::vector<ScanFile> views;
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
-    std::string frame;                      ///< empty: from the workflow or the file
-    std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
+    /// {stem} in it becomes the stem of the file, or of the view of a file that holds several; see with_stem(). Empty:
+    /// from the workflow or the file.
+    std::string frame;
+    std::optional<RigidTransform> pose;  ///< applied after reading; `to` names the new frame
     std::string refusal;  ///< why the scan must not be read, as a refused pose; if not empty, reading fails with it
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.

@@ -333,7 +333,7 @@ private:
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
                          : request_->unit != LengthUnit::unknown ? request_->unit
                                                                  : declared.unit;
-        node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
+        node.leaf.frame = with_stem(!file.frame.empty() ? file.frame : declared.frame, file.path);
         node.leaf.pose = file.pose;
         node.leaf.refusal = file.refusal;
         if (declared.kind == kind_of<PointCloud>() ||

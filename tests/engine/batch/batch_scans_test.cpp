@@ -231,9 +231,9 @@ TEST_F(BatchScans, WildcardsOfFurtherInputsWithoutAMatch_AreAWarning) {
 TEST_F(BatchScans, StemOfACompressedScan_HasNeitherExtension) {
     folder_.write("packed/part.ply.gz", "x");
     folder_.write("truth/part.stl", "x");
-    EXPECT_THAT(scans("[{path: packed/part.ply.gz, frame: 'f-{stem}', truth: 'truth/{stem}.stl'}]"), IsEmpty());
+    EXPECT_THAT(scans("[{path: packed/part.ply.gz, truth: {path: 'truth/{stem}.stl', frame: 'f-{stem}'}}]"), IsEmpty());
     EXPECT_EQ(batch_.scans[0].truth.files.front(), folder_ / "truth/part.stl");
-    EXPECT_EQ(batch_.scans[0].frame, "f-part");
+    EXPECT_EQ(batch_.scans[0].truth.frame, "f-part");
 }
 
 TEST_F(BatchScans, FolderOfAScan_IsAPlaceholderOfItsFiles) {
