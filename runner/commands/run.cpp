@@ -314,7 +314,7 @@ void add_scans(std::vector<ScanFile>& scans, const std::string& input,
 }
 
 /// `refusal`: why the object must not be read; empty if it may be read.
-ScanFile scan_file(const ObjectFolder& object, const std::string& refusal) {
+ScanFile scan_file(const ObjectFolder& object, const Refusal& refusal) {
     ScanFile file(object.folder);
     for (const std::filesystem::path& path : object.views) {
         file.views.emplace_back(path);

@@ -131,7 +131,8 @@ TEST_F(Objects, PosesThatDoNotFit_FailTheirObjectAlone) {
         EXPECT_EQ(ran.exit_code, 1);
         EXPECT_THAT(ran.out, AllOf(HasSubstr("2 of 3 failed"), HasSubstr("good.ply")));
         EXPECT_THAT(ran.err, AllOf(HasSubstr("no pose of the view 'v2.ply' of the object 'other'"),
-                                   HasSubstr("'two' has 2 files of poses, 'second.conf' and 'views.conf'; give one")));
+                                   HasSubstr("'two' has 2 files of poses, 'second.conf' and 'views.conf'\n"),
+                                   ContainsRegex("hint: add the pose of the view"), HasSubstr("hint: give one as")));
     }
     write_objects("{path: objects/two/*.ply, by: folder, poses: \"{folder}/se*.conf\"}");
     EXPECT_EQ(run_batch().exit_code, 0);

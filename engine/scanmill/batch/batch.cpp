@@ -494,7 +494,7 @@ private:
         if (!scan.poses_refusal.empty() && scan.refusal.empty()) {
             scan.refusal = scan.poses_refusal;
             if (++refused_ <= most_refused)
-                batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.refusal);
+                batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.refusal.text());
         }
         if (scan.poses_file.empty()) return;
         const fs::path file = path_from(fs::path(checked_.batch.file).parent_path(), scan.poses_file);

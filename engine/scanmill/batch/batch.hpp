@@ -19,6 +19,7 @@
 #include "scanmill/data/transform.hpp"
 #include "scanmill/gate/gate.hpp"
 #include "scanmill/plan/plan.hpp"
+#include "scanmill/plan/refusal.hpp"
 
 namespace scanmill {
 
@@ -58,11 +59,11 @@ struct BatchScan {
     std::string frame;  ///< as written; {stem} is that of each view. Empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
-    std::string refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run
+    Refusal refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run
     /// The poses of an object's views: those that the batch names, else those beside the views. check_batch() uses the
     /// latter only where a workflow takes poses and no setting gives them.
     std::filesystem::path poses_file;
-    std::string poses_refusal;  ///< why the poses beside the views cannot be used
+    Refusal poses_refusal;  ///< why the poses beside the views cannot be used
     Position poses_position;  ///< position of the key `poses`; line 0: poses beside the views
     BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures

@@ -76,7 +76,7 @@ Listed listed(const fs::path& folder) {
 }
 
 /// The reason why the poses do not fit the views; empty if they fit. `file`: the file of the poses, for messages.
-std::string misfit(const std::vector<ScanPose>& poses, const fs::path& file, const ObjectFolder& object) {
+Refusal misfit(const std::vector<ScanPose>& poses, const fs::path& file, const ObjectFolder& object) {
     std::vector<std::string> names, views;
     for (const ScanPose& pose : poses) names.push_back(pose.scan);
     for (const fs::path& view : object.views) views.push_back(view.filename().string());
@@ -85,16 +85,16 @@ std::string misfit(const std::vector<ScanPose>& poses, const fs::path& file, con
     };
     for (const fs::path& view : object.views)
         if (std::ranges::none_of(poses, [&](const ScanPose& pose) { return fits(pose, view); }))
-            return fmt::format("'{}' has no pose of the view '{}' of the object '{}'; it has poses of {}{}",
-                               file.string(), view.filename().string(), object.name(), enumerated(names),
-                               did_you_mean(view.filename().string(), names));
+            return {fmt::format("'{}' has no pose of the view '{}' of the object '{}'; it has poses of {}{}",
+                                file.string(), view.filename().string(), object.name(), enumerated(names),
+                                did_you_mean(view.filename().string(), names)),
+                    "add the pose of the view, or move the view to another folder"};
     for (const ScanPose& pose : poses)
         if (!pose.refused && std::ranges::none_of(object.views, [&](const fs::path& view) { return fits(pose, view); }))
-            return fmt::format(
-                "'{}' has a pose of '{}', which is not among the {} of the object '{}'; add the view, remove its pose, "
-                "or "
-                "set the parameter `poses` to this file, which passes over poses of other views",
-                file.string(), pose.scan, count_text(views.size(), "view", "views"), object.name());
+            return {fmt::format("'{}' has a pose of '{}', which is not among the {} of the object '{}'", file.string(),
+                                pose.scan, count_text(views.size(), "view", "views"), object.name()),
+                    "add the view, remove its pose, or set the parameter `poses` to this file, which passes over poses "
+                    "of other views"};
     return {};
 }
 
@@ -150,7 +150,9 @@ ObjectPoses poses_in(const fs::path& file, const ObjectFolder& object) {
         if (!has_names || std::ranges::any_of(object.views, may_hold_several_views)) return {file, {}};
         return {file, misfit(poses, file, object)};
     } catch (const Error& error) {
-        return {file, fmt::format("the object '{}' has no poses: {}", object.name(), error.sentence())};
+        return {file,
+                {fmt::format("the object '{}' has no poses: {}", object.name(), error.sentence()),
+                 error.hint().empty() ? "correct the file of poses, or remove it" : error.hint()}};
     }
 }
 
@@ -162,8 +164,9 @@ ObjectPoses poses_beside(const ObjectFolder& object) {
     if (found.empty()) return {};
     if (found.size() > 1)
         return {{},
-                fmt::format("the object '{}' has {} files of poses, '{}' and '{}'; give one as `poses`", object.name(),
-                            found.size(), found[0].filename().string(), found[1].filename().string())};
+                {fmt::format("the object '{}' has {} files of poses, '{}' and '{}'", object.name(), found.size(),
+                             found[0].filename().string(), found[1].filename().string()),
+                 "give one as `poses`"}};
     return poses_in(found.front(), object);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scanmill/formats/common/format.hpp"
+#include "scanmill/plan/refusal.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
 namespace scanmill {
@@ -40,7 +41,7 @@ ObjectFolder object_in(const std::filesystem::path& folder, const OnWarning& war
 /// The file with the poses of an object's views, or the reason why its cells fail. Both are empty without poses.
 struct ObjectPoses {
     std::filesystem::path file;
-    std::string refusal;
+    Refusal refusal;
 };
 
 /// The poses for the views of an object, in `file`. Refused if the file cannot be read, if a view has no pose in it, or

@@ -180,6 +180,7 @@ fs::path without_detours(const fs::path& file) {
 }
 
 const std::string pose_label = "the pose";
+constexpr const char* missing_file_hint = "add the file, or correct its path in the batch";
 
 /// Reads the numbers of `node` into `values`; false after an error.
 bool read_numbers(const YamlNode& node, std::span<double> values, std::string_view expected, Diagnostics& diagnostics) {
@@ -581,7 +582,8 @@ private:
             try {
                 poses = poses_in(only_file_for(scan, *path, warn), {scan.file, scan.views});
             } catch (const Error& error) {
-                poses.refusal = fmt::format("the object '{}' has no poses: {}", scan.name(), error.sentence());
+                poses.refusal = {fmt::format("the object '{}' has no poses: {}", scan.name(), error.sentence()),
+                                 missing_file_hint};
             }
             scan.poses_file = poses.file;
             scan.poses_refusal = poses.refusal;
@@ -603,9 +605,10 @@ private:
                                                          return value_of(scan, each);
                                                      });
                     } catch (const Error& error) {
-                        scan.refusal =
-                            fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence());
-                        warn(scan.refusal);
+                        scan.refusal = {
+                            fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence()),
+                            missing_file_hint};
+                        warn(scan.refusal.text());
                     }
                 }
         return settings;
@@ -651,10 +654,10 @@ private:
 
     /// The other scans still run, so this is a warning.
     void refuse(BatchScan& scan, const std::string& reason, const Position& position) {
-        scan.refusal = fmt::format(
-            "'{}': the scan '{}' has no pose, because it was refused: {}; register the views again, or remove the scan",
-            scan.pose_file.string(), scan.file.filename().string(), reason);
-        diagnostics_.warning(position, scan.refusal);
+        scan.refusal = {fmt::format("'{}': the scan '{}' has no pose, because it was refused: {}",
+                                    scan.pose_file.string(), scan.file.filename().string(), reason),
+                        "register the views again, or remove the scan"};
+        diagnostics_.warning(position, scan.refusal.text());
     }
 
     fs::path folder_;

@@ -19,6 +19,7 @@
 #include "scanmill/data/transform.hpp"
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/plan/plan.hpp"
+#include "scanmill/plan/refusal.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "scanmill/record/fields.hpp"
 
@@ -37,7 +38,7 @@ struct ScanFile {
     /// from the workflow or the file.
     std::string frame;
     std::optional<RigidTransform> pose;  ///< applied after reading; `to` names the new frame
-    std::string refusal;  ///< why the scan must not be read, as a refused pose; if not empty, reading fails with it
+    Refusal refusal;  ///< as a refused pose; if not empty, reading fails with it
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
@@ -94,7 +95,7 @@ struct LeafSource {
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
-    std::string refusal{};  ///< ScanFile::refusal
+    Refusal refusal{};  ///< ScanFile::refusal
     u32 view = 0;  ///< from 1, of a file that holds several; 0: the whole file
 
     /// The name of what is read, for messages and read_file(): the file, or FILE#2.

@@ -285,9 +285,10 @@ TEST_F(BatchScans, RefusedScan_IsAWarning_AndHasItsReason) {
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: p.json}]"),
                 ElementsAre(AllOf(StartsWith("b:3:35: warning: "), HasSubstr("'b.ply'"), HasSubstr("no-overlap"))));
     EXPECT_TRUE(batch_.scans[0].pose);
-    EXPECT_EQ(batch_.scans[0].refusal, "");
+    EXPECT_TRUE(batch_.scans[0].refusal.empty());
     EXPECT_FALSE(batch_.scans[1].pose);
-    EXPECT_THAT(batch_.scans[1].refusal, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+    EXPECT_THAT(batch_.scans[1].refusal.sentence, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+    EXPECT_THAT(batch_.scans[1].refusal.hint, HasSubstr("register the views again"));
 }
 
 TEST_F(BatchScans, MatrixAndQuaternion_AreTheSameMotion) {
