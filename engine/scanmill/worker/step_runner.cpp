@@ -244,7 +244,7 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 }
 
 Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped) {
-    if (!leaf.refusal.empty()) throw Error("{}", leaf.refusal);
+    if (!leaf.refusal.empty()) throw leaf.refusal.error();
     const ReadOptions options = reading(leaf, on_warning);
     Value value;
     LoadedFile loaded = leaf.also.empty() && leaf.kind == kind_of<TriangleMesh>()
