@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
     add_convert(app, chosen);
     add_measure(app, chosen);
     add_schema_and_docs(app, chosen);
-    add_runs(app, chosen);
+    add_runs(app, chosen, {argv, argv + argc});
     add_report(app, chosen);
     add_cache(app, chosen);
     add_completion(app, chosen);

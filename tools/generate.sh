@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes schemas/ and docs/filters/ with the built program: `generate.sh build/dev`, and bench/RESULTS.md, which marks the
-# results of older versions of filters. With `check` as second argument it changes nothing, and fails if the committed files
-# differ from the filters' declarations. If the program lacks a filter of this tree, that filter would lose its page; nothing
-# is written then.
+# Writes schemas/, the generated parts of the pages in docs/ and filters/, and bench/RESULTS.md, which marks the results of
+# older versions of filters, with the built program: `generate.sh build/dev`. With `check` as second argument it changes
+# nothing, and fails if the committed files differ from the filters' declarations. If the program lacks a filter of this
+# tree, nothing is written.
 set -euo pipefail
 build=$1
 program=$(realpath "$build")/bin/scanmill
@@ -17,24 +17,37 @@ for folder in $(sed -n 's/^ *scanmill_add_filter(\([a-z0-9_]*\).*/\1/p' filters/
     grep -qx -- "${folder//_/-}" <<<"$known" || missing+=("scanmill-${folder//_/-}")
 done
 if [ ${#missing[@]} -gt 0 ]; then
-    echo "error: '$program' lacks ${missing[*]}, whose pages would be lost" >&2
+    echo "error: '$program' lacks ${missing[*]}, which have pages here" >&2
     echo "hint: cmake --build $build --target ${missing[*]}" >&2
     exit 1
 fi
 
+# The pages with generated parts, and every filter's page.
+mapfile -t pages < <(grep -rl --include='*.md' '^<!-- generated: ' docs filters | sort)
+for folder in filters/*/; do
+    grep -qx "<!-- generated: filter $(basename "${folder//_/-}") -->" "${folder}README.md" && continue
+    echo "error: '${folder}README.md' lacks the generated part about its filter" >&2
+    echo "hint: write '<!-- generated: filter $(basename "${folder//_/-}") -->' and '<!-- end -->' into it" >&2
+    exit 1
+done
+
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 "$program" schema -o "$made/schemas"
-"$program" docs -o "$made/docs/filters"
-results() {  # from the pages in docs/filters
+cp --parents "${pages[@]}" "$made"
+(cd "$made" && "$program" docs --update "${pages[@]}")
+results() {  # from the versions in the filters' pages
     [ -f bench/results.json ] || return 0
     mkdir -p "$made/bench"
     cp bench/results.json "$made/bench"
     python3 -B bench/peers/run.py "$build" --only-table --into "$made/bench"
 }
 if [ "${2:-}" = check ]; then
-    if ! diff -ru --exclude=workflow.schema.json schemas "$made/schemas" || ! diff -ru docs/filters "$made/docs/filters"; then
-        echo "error: schemas/ or docs/filters/ are not what the filters declare; run: make generate" >&2
+    differs=0
+    diff -ru --exclude=workflow.schema.json schemas "$made/schemas" || differs=1
+    for page in "${pages[@]}"; do diff -u "$page" "$made/$page" || differs=1; done
+    if [ $differs = 1 ]; then
+        echo "error: schemas/ or the generated parts of pages are not what the filters declare; run: make generate" >&2
         exit 1
     fi
     results
@@ -43,8 +56,8 @@ if [ "${2:-}" = check ]; then
         exit 1
     fi
 else
-    rm -rf docs/filters
-    cp -r "$made/schemas" "$made/docs" .
+    cp -r "$made/schemas" .
+    for page in "${pages[@]}"; do cmp -s "$page" "$made/$page" || cp "$made/$page" "$page"; done
     results
     [ ! -f bench/results.json ] || cp "$made/bench/RESULTS.md" bench
 fi

@@ -67,6 +67,7 @@ SCANMILL_FILTER() {
                 "Standard error of a moved point, the largest over the corners of the part's bounding box.", headline,
                 smaller_is_better)
         .metric("scale", Unit::number, "Size of the target relative to the source: 1 if the units agree.")
+        .doubts({"`scale` is `report`, and a scale other than 1 explains the residuals"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const AlignResult found = align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
                                             part_at(inputs), params, context);

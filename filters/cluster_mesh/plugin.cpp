@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "cluster_mesh/cluster_mesh.hpp"
 
 using namespace scanmill;
@@ -67,6 +68,7 @@ SCANMILL_FILTER() {
         .metric("removed-triangles", Unit::count,
                 "Triangles removed again, where a vertex had several fans, to close a hole, or for intersections.")
         .metric("flips", Unit::count, "Edges flipped in the end.")
+        .doubts({"more than 2 % of the points are in no triangle", signs_of_doubtful_surface})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", cluster_mesh(inputs.get<PointCloud>("points"), params, context).mesh);
         });

@@ -44,6 +44,7 @@ SCANMILL_FILTER() {
         .metric("dropped", Unit::count, "Points that were dropped because a point of another input overlaps them.",
                 headline)
         .metric("fused", Unit::count, "Points that `fuse` moved; without `fuse` there is no such metric.")
+        .doubts({"views cross each other: at least one of them has a wrong pose"})
         .run([](const Inputs& inputs, P params, Context& context) {
             auto clouds = inputs.list<PointCloud>("points");
             const auto* transforms = inputs.find<Transforms>("transform");

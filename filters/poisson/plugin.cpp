@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
 #include "poisson/poisson.hpp"
 
 using namespace scanmill;
@@ -53,6 +54,7 @@ SCANMILL_FILTER() {
         .metric("cracks", Unit::count, "Holes of a few edges that PCL leaves in the surface and that were filled.")
         .metric("loops", Unit::count, "Boundary loops of the surface.", headline)
         .metric("cell", Unit::length, "Edge of the smallest cell that the octree may have.")
+        .doubts({"more than 5 % of the area is far from all points", "more than 5 % of the points are far from the surface", "at more than 5 % of the vertices the surface faces away from the normals of the nearest points", sign_of_doubtful_handles})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", poisson(inputs.get<PointCloud>("points"), params, context).mesh);
         });

@@ -103,6 +103,7 @@ SCANMILL_FILTER() {
         .metric("paired-lines", Unit::count, "Pairs of lines of two patches along one edge, which is probed once.")
         .metric("single", Unit::count, "Reference points with one touch although two were asked for.",
                 smaller_is_better)
+        .doubts({"no touch can be made"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("probes", probe_planner(inputs.get<FeatureGraph>("features"),
                                                          inputs.get<TriangleMesh>("mesh"), params, context)

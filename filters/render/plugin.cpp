@@ -84,6 +84,7 @@ SCANMILL_FILTER() {
         .param("creases", &P::creases,
                "Whether the mesh's sharp edges are drawn; without any, edges of more than 40 degrees.")
         .draws("scene")
+        .doubts({"the picture shows nothing"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("picture", render({drawable_at(inputs, "scene"), drawable_at(inputs, "over"),
                                                     drawable_at(inputs, "truth")},

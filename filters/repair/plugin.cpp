@@ -38,6 +38,7 @@ SCANMILL_FILTER() {
         .metric("flipped", Unit::count, "Triangles without area that were replaced by a flip of their longest edge.")
         .metric("components", Unit::count, "Connected components of the result.", headline)
         .metric("boundary-loops", Unit::count, "Boundary loops of the result.", headline)
+        .doubts({"more than 5 % of the area was removed", "the mesh was closed, and is open now"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", repair(inputs.get<TriangleMesh>("mesh"), params, context).mesh);
         });

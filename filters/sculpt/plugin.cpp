@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "sculpt/sculpt.hpp"
 
 using namespace scanmill;
@@ -52,6 +54,7 @@ SCANMILL_FILTER() {
         .metric("noise", Unit::length,
                 "Standard deviation of the boundary's points from a smooth surface, estimated from 5,000 to 10,000 of "
                 "them.")
+        .doubts({"more than half of the cells had to be removed", signs_of_doubtful_surface, sign_of_doubtful_handles})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             SculptResult result = sculpt(inputs.get<TetMesh>("tets"), params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("tets", std::move(result.tets));

@@ -34,6 +34,7 @@ SCANMILL_FILTER() {
         .metric("moved-rms", Unit::length, "Root of the mean square of the distances that points moved.", headline)
         .metric("moved-max", Unit::length, "The longest distance that a point moved.", headline)
         .metric("flat", Unit::count, "Points whose neighbours determine no polynomial; they moved onto their plane.")
+        .doubts({"the neighbours of most points form no surface: they deviate by more than 25 % of their distance"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", smooth(inputs.get<PointCloud>("points"), params, context).points);
         });

@@ -28,6 +28,7 @@ SCANMILL_FILTER() {
                "`none`, all edges get `subdivision` segments.",
                word("none"), above(0))
         .metric("triangles", Unit::count, "Triangles of the result.", headline)
+        .doubts({"the surface jumps by more than `max-error`"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             double left = 0;
             TriangleMesh mesh = tessellate(inputs.get<PatchComplex>("patches"), params, context, &left);

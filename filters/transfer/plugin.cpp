@@ -48,6 +48,7 @@ SCANMILL_FILTER() {
                 "Rows without values, because nothing that faces the same way is within max-distance.")
         .metric("filled", Unit::count, "Rows without values, because the column `filled` marks them.")
         .metric("max-distance", Unit::length, "The largest distance that was used; 0 if no column is carried.")
+        .doubts({"more than 5 % of the rows near `from` face away from it", "the column `filled` marks every row"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             Outputs outputs;
             const auto carry = [&](const auto& from, const auto& to) {

@@ -23,6 +23,7 @@ SCANMILL_FILTER() {
                at_least(0))
         .metric("points", Unit::count, "Touches that met the mesh.", headline)
         .metric("missed", Unit::count, "Touches without contact.", headline, smaller_is_better)
+        .doubts({"more than 10 % of the touches miss the mesh"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", virtual_probe(inputs.get<ProbePlan>("probes"),
                                                          inputs.get<TriangleMesh>("mesh"), params, context)

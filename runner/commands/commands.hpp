@@ -37,7 +37,7 @@ void add_info(CLI::App& app, Action& chosen);
 void add_convert(CLI::App& app, Action& chosen);
 void add_measure(CLI::App& app, Action& chosen);
 void add_schema_and_docs(CLI::App& app, Action& chosen);
-void add_runs(CLI::App& app, Action& chosen);
+void add_runs(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line);
 void add_report(CLI::App& app, Action& chosen);
 void add_cache(CLI::App& app, Action& chosen);
 void add_completion(CLI::App& app, Action& chosen);

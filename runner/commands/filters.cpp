@@ -87,6 +87,8 @@ void print_filter(const FilterSpec& spec) {
                    metric.better == Better::neither  ? ""
                    : metric.better == Better::larger ? " Larger is better."
                                                      : " Smaller is better.");
+    if (!spec.doubts.empty()) fmt::print("\nThe result is doubtful if\n");
+    for (const std::string& doubt : spec.doubts) fmt::print("  - {}\n", doubt);
 }
 
 struct ShowOptions {

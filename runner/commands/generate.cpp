@@ -12,6 +12,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/describe/document_schemas.hpp"
 #include "scanmill/describe/filter_page.hpp"
+#include "scanmill/describe/generated_parts.hpp"
 #include "scanmill/describe/output_schemas.hpp"
 #include "scanmill/describe/schemas.hpp"
 #include "scanmill/io/atomic_file.hpp"
@@ -27,6 +28,7 @@ struct SchemaOptions {
 
 struct DocsOptions {
     std::filesystem::path folder;
+    std::vector<std::filesystem::path> update;
 };
 
 /// Writes the file completely or not at all; makes the file's folder if it is missing. Throws Error if that fails.
@@ -77,8 +79,30 @@ void require_replaceable(const std::filesystem::path& file) {
             .hint("choose another folder, or move it away");
 }
 
+/// Writes the generated parts of the pages anew. Nothing is written if one of them has a fault.
+void update_pages(const std::vector<std::filesystem::path>& files, const FilterLibrary& library) {
+    std::vector<std::pair<std::filesystem::path, std::string>> changed;
+    for (const std::filesystem::path& file : files) {
+        std::ifstream stream(file);
+        if (!stream || !std::filesystem::is_regular_file(file))
+            throw Error("'{}' cannot be read", file.string()).hint("--update takes Markdown files that exist");
+        const std::string page(std::istreambuf_iterator<char>(stream), {});
+        try {
+            if (std::string updated = with_generated_parts(page, library); updated != page)
+                changed.emplace_back(file, std::move(updated));
+        } catch (const Error& error) {
+            throw error.reworded(fmt::format("'{}' {}", file.string(), error.sentence()));
+        }
+    }
+    for (const auto& [file, page] : changed) write_text(file, page);
+}
+
 int docs(const DocsOptions& options) {
     const FilterLibrary library = open_library();
+    if (!options.update.empty()) {
+        update_pages(options.update, library);
+        return done;
+    }
     std::vector<FilterSpec> specs;
     for (const std::string& name : library.names()) specs.push_back(*library.find(name));
     if (options.folder.empty()) {
@@ -119,7 +143,13 @@ void add_schema_and_docs(CLI::App& app, Action& chosen) {
 
     auto [docs_command, docs_options] =
         add_command<DocsOptions>(app, chosen, "docs", "Prints a page about every installed filter, in Markdown", docs);
-    docs_command.add_option("-o,--output", docs_options.folder, "Write one page per filter into this folder instead");
+    CLI::Option* folder = docs_command.add_option("-o,--output", docs_options.folder,
+                                                  "Write one page per filter into this folder instead");
+    docs_command
+        .add_option("--update", docs_options.update,
+                    "Write the generated parts of these Markdown files anew: what is between the lines "
+                    "'<!-- generated: filter NAME -->' (or filters LINK, doubts LINK) and '<!-- end -->'")
+        ->excludes(folder);
 }
 
 }  // namespace scanmill::runner

@@ -60,13 +60,12 @@ int revoke(const Options& options) {
     return done;
 }
 
-std::string metric_for(const Options& options, const Comparison& comparison) {
-    if (options.metric.empty()) return default_metric(comparison);
+/// Throws Error unless a cell has the metric.
+void require_metric(const std::string& metric, const Comparison& comparison) {
     const std::vector<std::string> names = metric_names(comparison);
-    if (std::ranges::find(names, options.metric) == names.end())
-        throw Error("no cell has the metric '{}'{}", options.metric, did_you_mean(options.metric, names))
+    if (std::ranges::find(names, metric) == names.end())
+        throw Error("no cell has the metric '{}'{}", metric, did_you_mean(metric, names))
             .hint("there are " + enumerated(names));
-    return options.metric;
 }
 
 int report(const Options& options) {
@@ -83,13 +82,14 @@ int report(const Options& options) {
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
-    const std::string metric = metric_for(options, comparison);
+    if (!options.metric.empty()) require_metric(options.metric, comparison);
     if (options.json)
         print_json(report_json(comparison));
     else
         fmt::print("{}", options.format == "junit"      ? junit_xml(comparison, options.strict)
-                         : options.format == "markdown" ? markdown(comparison, metric)
-                                                        : comparison_text(comparison, metric, stdout_width()));
+                         : options.format == "markdown"
+                             ? markdown(comparison, options.metric.empty() ? default_metric(comparison) : options.metric)
+                             : comparison_text(comparison, options.folder, options.metric, stdout_width()));
     return exit_code_of(comparison, options.strict);
 }
 
@@ -114,8 +114,8 @@ void add_report(CLI::App& app, Action& chosen) {
     command.add_option("--why", options.why, "The reason; it is recorded");
     CLI::Option* metric =
         command.add_option("--metric", options.metric,
-                           "The metric of the table of scans and variants: NAME, STEP.NAME, seconds, cpu-seconds or "
-                           "memory. Default: the first metric with a rule in the gate");
+                           "Print a table of this metric, with a row per scan and a column per variant: NAME, "
+                           "STEP.NAME, seconds, cpu-seconds or memory");
     CLI::Option* format = command.add_option("--format", options.format, "Print text, junit (XML) or markdown")
                               ->check(CLI::IsMember({"text", "junit", "markdown"}));
     CLI::Option* table =

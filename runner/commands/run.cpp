@@ -17,6 +17,7 @@
 #include "output/progress.hpp"
 #include "output/reproduce.hpp"
 #include "output/run_output.hpp"
+#include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
@@ -25,7 +26,6 @@
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
-#include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
@@ -36,7 +36,8 @@ struct ExecuteOptions {
     SessionSettings session;
     CacheOptions cache;
     std::uint64_t seed = 0;
-    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false;
+    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false,
+         is_wide = false;
 };
 
 struct RunOptions {
@@ -138,6 +139,8 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, then stop");
     command.add_flag("-q,--quiet", options.quiet, "Print no progress on stderr");
+    command.add_flag("--wide", options.is_wide,
+                     "Print every headline metric of every step and every file, however wide the table gets");
 }
 
 /// Opens the cache. Returns nullptr with --no-cache, and with a warning if the cache folder cannot be opened.
@@ -272,7 +275,9 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     } else if (options_.json) {
         print_json(report_json(graph, report));
     } else {
-        fmt::print("{}", report_text(graph, report, stdout_width()));
+        fmt::print("{}",
+                   run_table(graph, report, options_.is_wide ? TableExtent::everything : TableExtent::result,
+                             stdout_width()));
         if (comparison) fmt::print("{}", verdict_text(*comparison, options_.session.output_folder));
     }
     if (report.interrupted) {
@@ -297,17 +302,30 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
     return inputs;
 }
 
+/// The path without links, `.` and `..`.
+std::filesystem::path resolved(const std::filesystem::path& file) {
+    std::error_code ignored;  // a file that cannot be found is reported when it is read
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
+    return path.has_filename() ? path : path.parent_path();
+}
+
+/// Throws Error if two of the paths lead to one file or folder.
+void require_distinct(const std::vector<std::string>& scans) {
+    std::map<std::filesystem::path, std::string> given;
+    for (const std::string& scan : scans)
+        if (const auto [earlier, is_new] = given.emplace(resolved(scan), scan); !is_new)
+            throw Error("the scan '{}' is given twice{}", scan,
+                        earlier->second == scan ? "" : fmt::format(", also as '{}'", earlier->second))
+                .hint("give each scan once");
+}
+
 /// Adds the files that `--in` gives for the first input. Throws Error if one of them is a scan already.
 void add_scans(std::vector<ScanFile>& scans, const std::string& input,
                const std::vector<std::filesystem::path>& files) {
     std::set<std::filesystem::path> given;
-    const auto absolute = [](const std::filesystem::path& file) {
-        std::error_code ignored;  // a file that cannot be found is reported when it is read
-        return std::filesystem::weakly_canonical(file, ignored);
-    };
-    for (const ScanFile& scan : scans) given.insert(absolute(scan.path));
+    for (const ScanFile& scan : scans) given.insert(resolved(scan.path));
     for (const std::filesystem::path& file : files) {
-        if (!given.insert(absolute(file)).second)
+        if (!given.insert(resolved(file)).second)
             throw Error("the scan '{}' is given twice: `--in {}=…` repeats it", file.string(), input)
                 .hint("scans of the first input need no --in; give each file once");
         scans.emplace_back(file);
@@ -315,7 +333,7 @@ void add_scans(std::vector<ScanFile>& scans, const std::string& input,
 }
 
 /// `refusal`: why the object must not be read; empty if it may be read.
-ScanFile scan_file(const ObjectFolder& object, const std::string& refusal) {
+ScanFile scan_file(const ObjectFolder& object, const Refusal& refusal) {
     ScanFile file(object.folder);
     for (const std::filesystem::path& path : object.views) {
         file.views.emplace_back(path);
@@ -334,6 +352,7 @@ int run_workflow(const RunOptions& options) {
     CheckedWorkflow checked = check_workflow(workflow, text, execution.library(), settings, options.has_picture);
     if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
+    require_distinct(options.scans);
     RunRequest request = options.request;
     std::vector<ObjectFolder> objects;
     for (const std::string& scan : options.scans)
@@ -357,6 +376,7 @@ int run_workflow(const RunOptions& options) {
     const bool finds_poses = takes_poses(plan->workflow) && !settings.contains(poses_parameter);
     for (const ObjectFolder& object : objects) {
         const ObjectPoses poses = finds_poses ? poses_beside(object) : ObjectPoses();
+        if (!poses.idle.empty()) print_warning(poses.idle);
         GraphPart& part = parts.emplace_back(GraphPart{plan, request});
         part.request.scans = {scan_file(object, poses.refusal)};
         if (poses.file.empty()) continue;
@@ -370,18 +390,18 @@ int run_workflow(const RunOptions& options) {
 }
 
 /// The scan with the files that it declares for the plan's other inputs.
-ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
+ScanFile scan_file(const BatchScan& scan, const Plan& plan, const Refusal& refusal) {
     ScanFile file(scan.file);
     file.unit = scan.unit;
     file.frame = scan.frame;
     file.pose = scan.pose;
-    file.refusal = scan.refusal;
+    file.refusal = refusal;
     file.invalid = scan.invalid;
     for (const std::filesystem::path& path : scan.views) {
         ScanFile view(path);
         view.unit = scan.unit;
-        view.frame = with_stem(scan.frame, path);
-        view.refusal = scan.refusal;
+        view.frame = scan.frame;
+        view.refusal = refusal;
         view.invalid = scan.invalid;
         file.views.push_back(std::move(view));
     }
@@ -397,9 +417,10 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     return file;
 }
 
-RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
+RunRequest request_for(const CheckedBatch& checked, const BatchPart& part, const ExecuteOptions& options) {
     RunRequest request;
-    for (const std::size_t index : part.scans) request.scans.push_back(scan_file(batch.scans[index], *part.plan));
+    for (const std::size_t index : part.scans)
+        request.scans.push_back(scan_file(checked.batch.scans[index], *part.plan, checked.refusal(part, index)));
     request.only = part.only;
     request.output_folder = options.session.output_folder;
     request.seed = options.seed;
@@ -432,7 +453,7 @@ int run_batch(const BatchOptions& options) {
     choose(checked, options.choice);
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
-        parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
+        parts.push_back({part.plan, request_for(checked, part, options.execute)});
     if (!parts.empty()) parts.front().request.protected_files = files_of(checked.batch);
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);

@@ -6,12 +6,15 @@
 #include <map>
 
 #include "commands/commands.hpp"
+#include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/records/run_records.hpp"
 #include "scanmill/report/documents.hpp"
 #include "scanmill/session/output_lock.hpp"
+#include "scanmill/session/prune.hpp"
 
 namespace scanmill::runner {
 
@@ -26,6 +29,7 @@ struct Folder {
 
     RunRecords records;
     std::vector<Acceptance> acceptances;
+    std::map<std::int64_t, RunBytes> bytes = bytes_by_run(records);
     bool is_in_use;
     std::optional<std::int64_t> running{};  ///< the run that is still going on
 };
@@ -43,7 +47,11 @@ bool is_baseline(const Folder& folder, const Acceptance& acceptance, const std::
 }
 
 ListedRun listed(const Folder& folder, const RunSummary& run) {
-    ListedRun listed{run, was_killed(folder, run), {}};
+    ListedRun listed{run, was_killed(folder, run), {}, 0, 0};
+    if (const auto size = folder.bytes.find(run.id); size != folder.bytes.end()) {
+        listed.bytes = size->second.bytes;
+        listed.gone = size->second.gone;
+    }
     listed.summary.outcome = outcome_of(folder, run);
     for (const Acceptance& acceptance : folder.acceptances) {
         if (acceptance.run != run.id) continue;
@@ -74,6 +82,14 @@ std::string accepted_text(const Folder& folder, const RunSummary& run) {
             text += fmt::format(" (revoked by {}: {})", acceptance.revoked_by, acceptance.revoked_why);
     }
     return text;
+}
+
+/// "1.2 MB", or "1.2 MB, 3 gone" if files that the run wrote are gone.
+std::string size_text(const Folder& folder, const RunSummary& run) {
+    const auto found = folder.bytes.find(run.id);
+    if (found == folder.bytes.end()) return "-";
+    const auto& [bytes, gone] = found->second;
+    return byte_size_text(bytes) + (gone > 0 ? fmt::format(", {} gone", gone) : "");
 }
 
 using Variants = std::map<std::size_t, std::vector<std::string>>;
@@ -108,7 +124,7 @@ int list_runs(Folder& folder, bool json) {
         return done;
     }
     std::vector<std::string> headers{"run",         "started",  "workflow", "cells",   "doubtful", "failed",
-                                     "regressions", "computed", "cached",   "seconds", "outcome"};
+                                     "regressions", "computed", "cached",   "seconds", "takes",    "outcome"};
     if (!folder.acceptances.empty()) headers.push_back("accepted");
     Table table(headers);
     for (const RunSummary& run : runs) {
@@ -122,11 +138,14 @@ int list_runs(Folder& folder, bool json) {
                                      std::to_string(run.ran),
                                      std::to_string(run.cached),
                                      fmt::format("{:.2f}", run.seconds),
+                                     size_text(folder, run),
                                      outcome_of(folder, run)};
         if (!folder.acceptances.empty()) row.push_back(accepted_text(folder, run));
         table.add(std::move(row));
     }
     table.may_cut("workflow");
+    if (!folder.acceptances.empty()) table.may_cut("accepted");
+    for (const char* name : {"cached", "computed", "seconds", "started"}) table.may_leave_out(name);
     fmt::print("{}", table.text(stdout_width()));
     return done;
 }
@@ -188,6 +207,17 @@ int show_run(Folder& folder, std::int64_t id, bool json) {
     return done;
 }
 
+/// "1 to 4, 7": the numbers in ascending order; "none" without numbers.
+std::string numbers_text(const std::vector<std::int64_t>& numbers) {
+    std::string text;
+    for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
+        for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[end - 1] + 1;) ++end;
+        text += (text.empty() ? "" : ", ") + std::to_string(numbers[begin]) +
+                (end > begin + 1 ? fmt::format(" to {}", numbers[end - 1]) : "");
+    }
+    return text.empty() ? "none" : text;
+}
+
 std::int64_t parse_id(const std::string& text) {
     std::int64_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
@@ -198,10 +228,47 @@ std::int64_t parse_id(const std::string& text) {
 struct Options {
     std::filesystem::path folder;
     std::string show, id;
-    bool json = false;
+    std::optional<std::size_t> keep;
+    bool json = false, prunes = false, dry_run = false;
+    std::vector<std::string> command_line;
 };
 
+int prune_runs(const Options& options) {
+    if (!options.show.empty())
+        throw Error("--prune removes runs, and `show` prints one").hint("give one of them");
+    if (!options.keep || *options.keep == 0)
+        throw Error("--prune needs the number of runs to keep, at least 1")
+            .hint("scanmill runs DIR --prune --keep 30 keeps the newest 30 runs of every workflow and batch");
+    const Pruned pruned = prune(options.folder, *options.keep, options.dry_run, options.command_line, print_warning);
+    if (options.json) {
+        PrunedDocument document{pruned.runs, {}, pruned.bytes, pruned.records_before, pruned.records_after};
+        for (const std::filesystem::path& file : pruned.files) document.files.push_back(file.string());
+        print_document(json_of(document));
+        return done;
+    }
+    if (options.dry_run)
+        for (const std::filesystem::path& file : pruned.files) fmt::print("{}\n", printable_line(shown_path(file)));
+    fmt::print("{} {} ({}) and {} ({})\n", options.dry_run ? "would remove" : "removed",
+               count_text(pruned.runs.size(), "run", "runs"), numbers_text(pruned.runs),
+               count_text(pruned.files.size(), "file", "files"), byte_size_text(pruned.bytes));
+    if (!options.dry_run && !pruned.runs.empty())
+        fmt::print("the records had {}, and have {}\n", byte_size_text(pruned.records_before),
+                   byte_size_text(pruned.records_after));
+    if (pruned.changed > 0)
+        fmt::print("{} of these runs {}, because something else changed {} since\n",
+                   count_text(pruned.changed, "file", "files"), by_count(pruned.changed, "stays", "stay"),
+                   by_count(pruned.changed, "it", "them"));
+    if (pruned.outside > 0)
+        fmt::print("{} outside the folder {}\n", count_text(pruned.outside, "file", "files"),
+                   by_count(pruned.outside, "stays", "stay"));
+    return done;
+}
+
 int runs(const Options& options) {
+    if (options.prunes) return prune_runs(options);
+    if (options.keep || options.dry_run)
+        throw Error("{} is for --prune", options.keep ? "--keep" : "--dry-run")
+            .hint("scanmill runs DIR --prune --keep 30");
     Folder folder(options.folder);
     if (options.show.empty()) return list_runs(folder, options.json);
     if (options.id.empty())
@@ -212,12 +279,18 @@ int runs(const Options& options) {
 
 }  // namespace
 
-void add_runs(CLI::App& app, Action& chosen) {
+void add_runs(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line) {
     auto [command, options] = add_command<Options>(
         app, chosen, "runs", "Lists the runs recorded in an output folder, or shows one of them", runs);
     command.add_option("DIR", options.folder, "The output folder of the runs")->required();
     command.add_option("show", options.show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
     command.add_option("ID", options.id, "The run's number in the list");
+    command.add_flag("--prune", options.prunes,
+                     "Remove old runs from the records, and the files that only they wrote; needs --keep. Accepted runs "
+                     "stay");
+    command.add_option("--keep", options.keep, "How many runs of every workflow and batch --prune keeps, the newest");
+    command.add_flag("--dry-run", options.dry_run, "Print what --prune would remove, and remove nothing");
+    options.command_line = command_line;
     command.add_flag("--json", options.json, "Print the result as JSON");
 }
 

@@ -13,13 +13,15 @@ namespace scanmill::runner {
 
 namespace {
 
-constexpr std::size_t most_changes = 12, most_reasons = 10, most_scans = 20, most_commands = 10;
+constexpr std::size_t most_rules = 8, most_changes = 10, most_reasons = 10, most_scans = 20, most_commands = 3;
 
 std::string rest_text(const std::string& rest) { return rest.empty() ? "" : rest + "\n"; }
 
-std::string change_text(const ReportTable& changes, std::optional<std::size_t> width) {
+/// The table, with columns of names cut if it is wider than the terminal.
+std::string table_text(const ReportTable& changes, const std::vector<std::string>& names,
+                       std::optional<std::size_t> width) {
     Table table(changes.headers);
-    for (const char* header : {"scan", "variant", "what"}) table.may_cut(header);
+    for (const std::string& header : names) table.may_cut(header);
     for (const std::vector<std::string>& row : changes.rows) table.add(row);
     return table.text(width);
 }
@@ -65,24 +67,29 @@ std::string matrix_text(const ReportTable& matrix, std::optional<std::size_t> wi
 
 }  // namespace
 
-std::string comparison_text(const Comparison& comparison, const std::string& metric, std::optional<std::size_t> width) {
+std::string comparison_text(const Comparison& comparison, const std::filesystem::path& folder,
+                            const std::string& metric, std::optional<std::size_t> width) {
     std::string text = fmt::format("{}: {}\n{}\n{}\n\n", printable_line(comparison.batch), name_of(comparison.verdict),
                                    counts_text(comparison), printable_line(runs_text(comparison)));
     for (const auto& [name, fact] : facts_of(comparison))
         text += fmt::format("{:<7}  {}\n", name, printable_line(fact));
+    if (!metric.empty()) {
+        const ReportTable cells = matrix(comparison, metric, most_scans);
+        return text + "\n" + matrix_text(cells, width) + rest_text(cells.rest);
+    }
+    const ReportTable rules = rule_table(comparison, most_rules);
+    text += "\nBy rule and variant\n" + table_text(rules, {"variant", "metric"}, width) + rest_text(rules.rest);
     if (const ReportTable changes = change_table(comparison, most_changes); !changes.rows.empty())
-        text += "\nWhat changed\n" + change_text(changes, width) + rest_text(changes.rest);
+        text += "\nWhat changed\n" + table_text(changes, {"scan", "variant", "what"}, width) + rest_text(changes.rest);
     if (const ReportTable reasons = reason_table(comparison, most_reasons); !reasons.rows.empty())
         text += "\nWhy\n" + reason_text(reasons) + rest_text(reasons.rest);
-    if (const ReportTable cells = matrix(comparison, metric, most_scans); !cells.rows.empty())
-        text += "\n" + matrix_text(cells, width) + rest_text(cells.rest);
     if (const std::vector<std::string> commands = commands_of(comparison); !commands.empty()) {
         text += "\nTo reproduce\n";
         for (std::size_t i = 0; i < std::min(commands.size(), most_commands); ++i) text += commands[i] + "\n";
-        if (commands.size() > most_commands)
-            text += fmt::format("and {} more; --json has all\n", commands.size() - most_commands);
+        if (commands.size() > most_commands) text += fmt::format("and {} more\n", commands.size() - most_commands);
     }
-    return text;
+    return text + fmt::format("\nFor every scan: scanmill report {} --metric NAME; for everything: --json\n",
+                              shell_word(folder));
 }
 
 std::string verdict_text(const Comparison& comparison, const std::filesystem::path& folder) {

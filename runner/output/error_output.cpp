@@ -58,7 +58,7 @@ std::string error_text(const Error& error) {
 
 void print(const Error& plain, bool json) {
     const Error error = with_option(plain);
-    print_stderr("{}\n", error_text(error));
+    print_stderr("{}\n", for_stderr(error_text(error)));
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();
@@ -67,7 +67,7 @@ void print(const Error& plain, bool json) {
 
 void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
-        print_stderr("{}\n", printable_line(text(diagnostic, diagnostics.file())));
+        print_stderr("{}\n", for_stderr(printable_line(text(diagnostic, diagnostics.file()))));
     if (diagnostics.has_errors())
         print_stderr("{} in '{}'\n", count_text(diagnostics.errors(), "error", "errors"),
                      printable_line(diagnostics.file()));

@@ -164,7 +164,7 @@ std::optional<double> Progress::time_left(double now) {
 
 void Progress::print(const std::string& text) {
     wipe();
-    print_stderr("{}\n", printable(text));
+    print_stderr("{}\n", for_stderr(printable(text)));
 }
 
 void Progress::wipe() {
@@ -179,7 +179,7 @@ void Progress::paint() {
     const double now = seconds_since(begin_);
     for (const std::string& line :
          board_.lines(now, std::max<std::size_t>(width, 2) - 1, std::max<std::size_t>(height, 2) - 1, time_left(now))) {
-        print_stderr("{}\n", line);
+        print_stderr("{}\n", for_locale(line));
         ++painted_;
     }
     std::fflush(stderr);

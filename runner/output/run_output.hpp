@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The results of a run on stdout: the prediction with --dry-run, events during the run, and the report after it.
+/// What a run prints on stdout: the prediction with --dry-run, events during the run, and the report as JSON after it.
 
 #include <chrono>
 #include <map>
@@ -19,11 +19,6 @@ namespace scanmill::runner {
 std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 
-/// A table with one row per cell: points read, the filters' headline metrics, properties of the written mesh, seconds,
-/// files. Cells of one scan share a row if a file of the scan could not be read. Lengths, areas and volumes are in the
-/// scan's unit. If all scans of a column declare one unit, its header names the unit; if they differ, each cell does.
-/// `width`: columns of the terminal; empty: no limit.
-std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width = {});
 Json report_json(const RunGraph& graph, const RunReport& report);
 
 /// Prints events as JSON on stdout during the run, one object per line.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <clocale>
+#include <cstdlib>
 #include <cwchar>
 #include <nlohmann/json.hpp>
 
@@ -98,7 +99,57 @@ std::optional<std::size_t> stdout_width() {
     return is_known ? size.ws_col : 80;
 }
 
-void print_warning(std::string_view text) { print_stderr("warning: {}\n", printable_line(text)); }
+std::string for_locale(std::string text) {
+    static const bool has_utf8 = [] {
+        for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"})
+            if (const char* locale = std::getenv(name); locale && *locale != '\0') {
+                const std::string_view set = std::string_view(locale).substr(std::string_view(locale).find('.') + 1);
+                return std::string_view(locale).find('.') == std::string_view::npos || set.starts_with("utf") ||
+                       set.starts_with("UTF");
+            }
+        return true;
+    }();
+    if (has_utf8) return text;
+    for (const auto& [symbol, plain] : {std::pair("…", '~'), std::pair("²", '2'), std::pair("³", '3')})
+        for (std::size_t at = 0; (at = text.find(symbol, at)) != std::string::npos; ++at)
+            text.replace(at, std::string_view(symbol).size(), 1, plain);
+    return text;
+}
+
+std::string wrapped(const std::string& text, std::size_t width) {
+    constexpr std::string_view indent = "  ";
+    std::string result;
+    std::size_t taken = 0;  // columns of the present line
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find_first_of(" \n", begin + 1), text.size());
+        const bool is_new_line = text[begin] == '\n';
+        std::string word = text.substr(begin, end - begin);  // with the blank or line end before it
+        if (is_new_line) {
+            taken = columns_of(word.substr(1));
+        } else if (taken > indent.size() && taken + columns_of(word) > width && word[0] == ' ') {
+            word = "\n" + std::string(indent) + word.substr(1);
+            taken = columns_of(word.substr(1));
+        } else {
+            taken += columns_of(word);
+        }
+        result += word;
+        begin = end;
+    }
+    return result;
+}
+
+std::string for_stderr(std::string text) {
+    winsize size{};
+    if (::isatty(STDERR_FILENO) != 0) {
+        const bool is_known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+        text = wrapped(text, is_known ? size.ws_col : 80);
+    }
+    return for_locale(std::move(text));
+}
+
+void print_warning(std::string_view text) {
+    print_stderr("{}\n", for_stderr("warning: " + printable_line(text)));
+}
 
 void print_json(const nlohmann::ordered_json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -109,13 +160,18 @@ void Table::add(std::vector<std::string> row) {
     rows_.push_back(std::move(row));
 }
 
-void Table::may_cut(const std::string& header) {
+std::size_t Table::column_of(const std::string& header) const {
     const auto found = std::ranges::find(rows_.front(), header);
     assert(found != rows_.front().end());
-    to_cut_.push_back(static_cast<std::size_t>(found - rows_.front().begin()));
+    return static_cast<std::size_t>(found - rows_.front().begin());
 }
 
-std::string Table::text(std::optional<std::size_t> width) const {
+void Table::may_cut(const std::string& header, std::size_t comfortable) {
+    to_cut_.emplace_back(column_of(header), comfortable);
+}
+void Table::may_leave_out(const std::string& header) { to_leave_out_.push_back(column_of(header)); }
+
+FittedTable Table::fitted(std::optional<std::size_t> width) const {
     std::vector<std::size_t> widths(rows_.front().size(), 0);
     std::vector<bool> numeric(rows_.front().size(), true);
     for (std::size_t row = 0; row < rows_.size(); ++row)
@@ -126,24 +182,39 @@ std::string Table::text(std::optional<std::size_t> width) const {
     constexpr std::size_t gap = 2, least = 12;
     std::size_t total = gap * (widths.size() - 1);
     for (const std::size_t each : widths) total += each;
-    for (const std::size_t column : to_cut_) {
-        if (!width || total <= *width) break;
-        const std::size_t cut = std::min(total - *width, widths[column] - std::min(widths[column], least));
-        widths[column] -= cut;
-        total -= cut;
+    const auto is_too_wide = [&] { return width && total > *width; };
+    const auto cut_names = [&](bool is_comfortable) {
+        for (const auto& [column, comfortable] : to_cut_) {
+            if (!is_too_wide()) break;
+            const std::size_t limit = is_comfortable ? comfortable : least;
+            const std::size_t cut = std::min(total - *width, widths[column] - std::min(widths[column], limit));
+            widths[column] -= cut;
+            total -= cut;
+        }
+    };
+    std::vector<bool> is_left_out(widths.size(), false);
+    FittedTable result;
+    if (!to_leave_out_.empty()) cut_names(true);
+    for (const std::size_t column : to_leave_out_) {
+        if (!is_too_wide()) break;
+        is_left_out[column] = true;
+        total -= widths[column] + gap;
+        ++result.left_out;
     }
-    std::string text;
+    cut_names(false);
     for (const std::vector<std::string>& row : rows_) {
         std::string line;
         for (std::size_t column = 0; column < row.size(); ++column) {
+            if (is_left_out[column]) continue;
             const std::string cell = cut_middle(row[column], widths[column]);
             const std::string padding(widths[column] - columns_of(cell), ' ');
-            line += (column > 0 ? std::string(gap, ' ') : "") + (numeric[column] ? padding + cell : cell + padding);
+            line += (line.empty() ? "" : std::string(gap, ' ')) + (numeric[column] ? padding + cell : cell + padding);
         }
         while (line.ends_with(' ')) line.pop_back();
-        text += line + "\n";
+        result.text += line + "\n";
     }
-    return text;
+    result.text = for_locale(std::move(result.text));
+    return result;
 }
 
 }  // namespace scanmill::runner

@@ -131,10 +131,48 @@ TEST_F(Objects, PosesThatDoNotFit_FailTheirObjectAlone) {
         EXPECT_EQ(ran.exit_code, 1);
         EXPECT_THAT(ran.out, AllOf(HasSubstr("2 of 3 failed"), HasSubstr("good.ply")));
         EXPECT_THAT(ran.err, AllOf(HasSubstr("no pose of the view 'v2.ply' of the object 'other'"),
-                                   HasSubstr("'two' has 2 files of poses, 'second.conf' and 'views.conf'; give one")));
+                                   HasSubstr("'two' has 2 files of poses, 'second.conf' and 'views.conf'\n"),
+                                   ContainsRegex("hint: add the pose of the view"), HasSubstr("hint: give one as")));
     }
     write_objects("{path: objects/two/*.ply, by: folder, poses: \"{folder}/se*.conf\"}");
     EXPECT_EQ(run_batch().exit_code, 0);
+}
+
+TEST_F(Objects, MissingPosesAndSettings_FailOnlyTheWorkflowsThatTakeThem) {
+    write_object("objects/a", 2);
+    write_poses("objects/a/second.conf", 2);
+    folder_.write("objects/b/v1.ply", content_of(folder_ / "objects/a/v1.ply"));
+    const std::string rest =
+        "steps: [merge: ]\noutputs: {\"{workflow}-{scan}.ply\": merge}\n"
+        "inputs: {views: {kind: points, list: true, frame: \"{stem}\"}}\n";
+    folder_.write("plain.yaml", "scanmill: 1\nname: plain\n" + rest);
+    folder_.write("sized.yaml", "scanmill: 1\nname: sized\nparameters: {file: none}\n" +
+                                    std::string("inputs: {views: {kind: points, list: true, frame: \"{stem}\"}}\n") +
+                                    "steps: [{merge: {poses: $file}}]\noutputs: {\"{workflow}-{scan}.ply\": merge}\n");
+    folder_.write("b.yaml",
+                  "scanmill: 1\nbatch: b\nscans: [{path: objects/*/*.ply, by: folder, set: {file: "
+                  "\"{folder}/view?.json\"}}]\nworkflows: [w.yaml, plain.yaml, sized.yaml]\n");
+    const ProgramResult ran = run_batch();
+    EXPECT_EQ(ran.exit_code, 1) << ran.err;
+    const Json report = recorded(1);
+    std::map<std::string, std::string> outcomes;
+    for (const Json& cell : report["cells"])
+        outcomes[cell["workflow"].get<std::string>() + " " + cell["scan"].get<std::string>()] = cell["outcome"];
+    EXPECT_THAT(outcomes,
+                ElementsAre(testing::Pair("joined objects/a", "failed"), testing::Pair("joined objects/b", "ok"),
+                            testing::Pair("plain objects/a", "ok"), testing::Pair("plain objects/b", "ok"),
+                            testing::Pair("sized objects/a", "failed"), testing::Pair("sized objects/b", "failed")));
+}
+
+TEST_F(Objects, DryRun_NamesThePosesOfEachObject) {
+    write_object("objects/a", 2);
+    write_object("objects/b", 2, false);
+    EXPECT_THAT(run({"objects/a", "objects/b", "--dry-run"}).out, HasSubstr("        reads objects/a/views.conf\n"));
+    const Json plan = Json::parse(run({"objects/a", "objects/b", "--dry-run", "--json"}).out);
+    std::vector<Json> files;
+    for (const Json& node : plan["nodes"])
+        if (node["step"] == "merge") files.push_back(node.value("parameter-files", Json()));
+    EXPECT_THAT(files, ElementsAre(Json{"objects/a/views.conf"}, Json()));
 }
 
 TEST_F(Objects, FoldersOnTheCommandLine_AreOneObjectEach) {
@@ -210,6 +248,20 @@ TEST_F(Objects, FileOfSeveralViews_IsAllOfThem) {
     const auto cloud = read_points(folder_ / "out/room.ply");
     EXPECT_EQ(cloud->size(), 16u);
     EXPECT_EQ(cloud->columns.find("source")->number(15), 2) << "three views";
+}
+
+TEST_F(Objects, PosesBesideAFileWithItsOwn_AreWarnedOf) {
+    folder_.write("objects/room/all.ptx",
+                  "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+                  "1 0 1 0.5\n2 1 1 0.5\n3 4 1 0.5\n4 9 1 0.5\n");
+    write_poses("objects/room/views.conf", 1);
+    write_objects("{path: objects/*/*.ptx, by: folder}");
+    for (const ProgramResult& ran : {run_batch(), run({"objects/room"})}) {
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        EXPECT_THAT(ran.err, AllOf(HasSubstr("takes the poses in its views, as 'all.ptx'"),
+                                   HasSubstr("'objects/room/views.conf' is not used")));
+    }
+    EXPECT_THAT(run({"objects/room", "--set", "poses=none"}).err, testing::Not(HasSubstr("is not used")));
 }
 
 TEST_F(Objects, Results_AreNoObject_AndNoViews) {

@@ -76,6 +76,7 @@ protected:
         add({"report", "out"});
         add({"runs", "out"});
         for (int run = 1; run <= 10; ++run) add({"runs", "out", "show", std::to_string(run)});
+        add({"runs", "out", "--prune", "--keep", "2", "--dry-run"});
         add({"info", "points.xyz", "corner.off", "stray.xyz", "absent.ply", "features.json"});
         add({"measure", "corner.off", "points.xyz"});
         add({"measure", "corner.off", "corner.off", "--certify", "--unit", "mm"});

@@ -55,7 +55,7 @@ TEST_F(ReportCommand, TheFirstNight_IsNew) {
     const ProgramResult result = report();
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.out, AllOf(StartsWith("nightly: new\n1 cell: 1 new\n"), HasSubstr("no run was accepted yet"),
-                                  HasSubstr("hausdorff (mm)"), HasSubstr("scans/a.ply")));
+                                  ContainsRegex("hausdorff  \\+1 %  default +1  0.5 mm  -  +0\n")));
 }
 
 TEST_F(ReportCommand, ARegression_TripsTheGate) {
@@ -68,7 +68,7 @@ TEST_F(ReportCommand, ARegression_TripsTheGate) {
     const ProgramResult tripped = report();
     EXPECT_EQ(tripped.exit_code, 4);
     EXPECT_THAT(tripped.out, AllOf(StartsWith("nightly: regressed\n"), HasSubstr("accepted by Ann: a new scanner"),
-                                   HasSubstr("+50 %"), HasSubstr("0.75 !"),
+                                   HasSubstr("+50 %"), ContainsRegex("hausdorff  \\+1 %  default .*0.75 mm .*1\n"),
                                    HasSubstr("scanmill batch jobs/nightly.yaml --scan scans/a.ply --only default")));
     EXPECT_EQ(report({"--run", "2"}).exit_code, 0);
     EXPECT_EQ(accept("3").exit_code, 0);
@@ -145,6 +145,27 @@ TEST_F(ReportCommand, Formats_AreWhatTheySay) {
                                  HasSubstr("measure-surface,hausdorff,0.5,mm\r\n"),
                                  HasSubstr("measure-surface,hausdorff,0.75,mm\r\n")));
     EXPECT_THAT(report({"--table", "csv", "--run", "1"}).out, Not(HasSubstr("0.75")));
+}
+
+TEST_F(ReportCommand, TenThousandCells_FitAScreen) {
+    RunDetails before = made_run(1, rules), now = made_run(2, rules);
+    for (int scan = 0; scan < 2500; ++scan)
+        for (const char* variant : {"fine", "coarse", "a b: c", "grün"}) {
+            add_cell(before, "jobs/scans/" + std::to_string(scan) + ".ply", variant, 0.5);
+            add_cell(now, "jobs/scans/" + std::to_string(scan) + ".ply", variant,
+                     scan % 2 == 0 && *variant == 'f' ? 0.5 + scan : 0.5);
+        }
+    record(before);
+    accept("1");
+    record(now);
+    const ProgramResult result = report();
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_LT(std::ranges::count(result.out, '\n'), 50);
+    EXPECT_THAT(result.out,
+                AllOf(ContainsRegex("hausdorff  \\+1 %  fine +2500  0.5 mm .*1249\n"),
+                      ContainsRegex("hausdorff  \\+1 %  grün +2500  0.5 mm +\\+0 % +0\n"),
+                      HasSubstr("scans/2498.ply"), HasSubstr("and 1239 more\n"), HasSubstr("and 1246 more\n"),
+                      HasSubstr("For every scan: scanmill report out --metric NAME; for everything: --json\n")));
 }
 
 TEST_F(ReportCommand, Metric_ChoosesTheTable) {

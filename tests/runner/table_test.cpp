@@ -12,6 +12,8 @@ namespace scanmill::runner {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 Table scans(const std::string& name) {
     Table table({"scan", "points", "files"});
@@ -57,6 +59,33 @@ TEST(Table, WideCharacters_CountTwice) {
     for (const std::size_t width : {36u, 37u, 38u, 47u}) EXPECT_EQ(widest(table.text(width)), width);
     EXPECT_EQ(widest(table.text()), 30u + 2 + 6 + 2 + 9);
     EXPECT_THAT(table.text(), HasSubstr("b.ply" + std::string(25, ' ') + "       7"));
+}
+
+TEST(Table, ColumnsAreLeftOut_BeforeNamesGetShorterThanComfortable) {
+    Table table({"scan", "metric", "files"});
+    table.add({std::string(40, 's'), std::string(20, '1'), std::string(40, 'f')});
+    table.may_cut("scan");
+    table.may_cut("files");
+    table.may_leave_out("metric");
+    EXPECT_EQ(table.fitted(110).left_out, 0u);
+    EXPECT_EQ(table.fitted(72).left_out, 0u) << "24 + 20 + 24 and the gaps";
+    EXPECT_EQ(widest(table.fitted(72).text), 72u);
+    const FittedTable narrow = table.fitted(60);
+    EXPECT_EQ(narrow.left_out, 1u);
+    EXPECT_THAT(narrow.text, StartsWith("scan"));
+    EXPECT_THAT(narrow.text, Not(HasSubstr("metric")));
+    EXPECT_EQ(widest(table.fitted(30).text), 30u);
+}
+
+TEST(Wrapped, BreaksLinesAtBlanks) {
+    EXPECT_EQ(wrapped("warning: a scan is broken", 80), "warning: a scan is broken");
+    EXPECT_EQ(wrapped("warning: a scan is broken", 15), "warning: a scan\n  is broken");
+    EXPECT_EQ(wrapped("error: x\n  in step 'y'\nhint: no", 12), "error: x\n  in step\n  'y'\nhint: no");
+    EXPECT_EQ(wrapped("see /a/path/that/is/longer/than/the/line now", 12),
+              "see\n  /a/path/that/is/longer/than/the/line\n  now")
+        << "words stay whole";
+    EXPECT_EQ(wrapped("日本語 日本語 日本語", 14), "日本語 日本語\n  日本語") << "wide characters count twice";
+    EXPECT_EQ(wrapped("", 10), "");
 }
 
 TEST(CutMiddle, Examples) {

@@ -131,9 +131,9 @@ TEST_F(UpdateWorkflows, WorkedCases_ReplaceWhatTheirCloudsShow) {
     const std::map<std::string, int> replaced{
         {"airbag", 3}, {"block", 1}, {"golf-club", 1}, {"joystick-1", 1}, {"joystick-2", 1}};
     for (const auto& [name, groups] : replaced) {
-        const std::string json = content_of(cases / ("updated/" + name + "-updated.ply.json"));
-        EXPECT_THAT(json, HasSubstr("\"replaced\": " + std::to_string(groups))) << name;
-        EXPECT_THAT(json, HasSubstr("\"groups\": " + std::to_string(groups + 1))) << name;
+        const std::string description = content_of(cases / ("updated/" + name + "-updated.ply.json"));
+        EXPECT_THAT(description, HasSubstr("\"replaced\": " + std::to_string(groups))) << name;
+        EXPECT_THAT(description, HasSubstr("\"groups\": " + std::to_string(groups + 1))) << name;
     }
 }
 

@@ -4,12 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "scanmill/formats/files.hpp"
 #include "support/program.hpp"
 
 namespace scanmill::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string ptx_scan(double x, double z) {
@@ -54,7 +57,7 @@ TEST_F(ViewsCommand, SingleScan_IsTheWholeFile_OrTheViewThatIsNamed) {
     EXPECT_EQ(read_points(folder_ / "out/room-2.ply")->size(), 4u);
     const ProgramResult missing = run({"run", "one.yaml", "room.ptx#3", "-o", "out"});
     EXPECT_EQ(missing.exit_code, 1);
-    EXPECT_THAT(missing.err, HasSubstr("room.ptx#3': has no scan 3"));
+    EXPECT_THAT(missing.err, testing::AllOf(HasSubstr("room.ptx#3': has no scan 3"), HasSubstr("from #1 to #2")));
 }
 
 TEST_F(ViewsCommand, Views_AreCachedApart) {
@@ -87,6 +90,22 @@ TEST_F(ViewsCommand, Batch_TakesAViewByName) {
     const ProgramResult ran = run({"batch", "batch.yaml", "-o", "out"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err << ran.out;
     EXPECT_EQ(read_points(folder_ / "out/room-2.ply")->size(), 4u);
+}
+
+TEST_F(ViewsCommand, FrameOfABatch_IsNamedAfterEachView) {
+    for (const char* scan :
+         {"{path: room.ptx, frame: \"f-{stem}\"}", "{path: o/a/*.ptx, by: folder, frame: \"f-{stem}\"}"}) {
+        std::filesystem::remove_all(folder_ / "out");
+        folder_.write("o/a/room.ptx", ptx_scan(1, 10) + ptx_scan(2, 20));
+        folder_.write("batch.yaml", fmt::format("scanmill: 1\nbatch: b\nscans: [{}]\nworkflows: [list.yaml]\n", scan));
+        const ProgramResult ran = run({"batch", "batch.yaml", "-o", "out"});
+        ASSERT_EQ(ran.exit_code, 0) << ran.err;
+        std::vector<std::string> frames;
+        const auto recorded = nlohmann::json::parse(run({"runs", "out", "show", "1", "--json"}).out);
+        for (const auto& step : recorded["steps"])
+            if (step["step"] == "read") frames.push_back(step["authored"]["frame"]);
+        EXPECT_THAT(frames, ElementsAre("f-room-1", "f-room-2")) << scan;
+    }
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ std::string schema_of(const std::vector<std::string>& arguments, const json& doc
         return command == "run" ? "run" : "batch-event";
     }
     if (command == "show" && has("--example")) return "show-example";
+    if (command == "runs" && has("--prune")) return "runs-prune";
     if (command == "runs" && has("show")) return "runs-show";
     if (command == "cache") return has("clear") ? "cache-clear" : "cache-info";
     return command;

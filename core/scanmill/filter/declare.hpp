@@ -229,6 +229,12 @@ public:
         declaration_.spec.adds = std::move(columns);
         return *this;
     }
+    /// When the filter doubts its result, each as a clause that can follow "if". A filter that calls Context::doubt()
+    /// declares when.
+    Declare& doubts(std::vector<std::string> clauses) {
+        declaration_.spec.doubts = std::move(clauses);
+        return *this;
+    }
     /// The field may be inherited.
     template <class T, class Owner, class... Constraints>
         requires std::derived_from<Params, Owner>

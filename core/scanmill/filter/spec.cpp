@@ -164,6 +164,9 @@ void require_sound(const FilterSpec& spec) {
     if (spec.streams) require_sound_stream(spec);
     if (spec.measures) require_sound_measure(spec);
     if (spec.draws) require_sound_drawing(spec);
+    for (const std::string& doubt : spec.doubts)
+        if (doubt.empty() || doubt.ends_with('.'))
+            throw Error("filter {}: the doubt '{}' is not a clause that can follow 'if'", spec.name, doubt);
 }
 
 }  // namespace scanmill

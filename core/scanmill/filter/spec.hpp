@@ -112,6 +112,8 @@ struct FilterSpec {
     /// Names of columns that the filter may add to its outputs. Formats that cannot hold these columns leave them out
     /// without a warning.
     std::vector<std::string> adds;
+    /// When the filter doubts its result, each as a clause: "more than 5 % of the surface is filled".
+    std::vector<std::string> doubts;
 
     const PortSpec* input(std::string_view port) const;
     const PortSpec* output(std::string_view port) const;
@@ -137,7 +139,8 @@ constexpr auto fields(const FilterSpec*) {
         field("measures", &T::measures, "The filter compares the value at one input with the truth at another.")
             .optional(),
         field("draws", &T::draws, "The filter draws the value at this input.").optional(),
-        field("adds", &T::adds, "Columns that the filter may add to its outputs.").optional()};
+        field("adds", &T::adds, "Columns that the filter may add to its outputs.").optional(),
+        field("doubts", &T::doubts, "When the filter doubts its result, each as a clause.").optional()};
 }
 
 /// Throws Error for an unsound declaration:
@@ -151,6 +154,7 @@ constexpr auto fields(const FilterSpec*) {
 /// - The stream needs a parameter that does not exist or that always has a value.
 /// - The filter compares a value with a truth, but lacks one of these two inputs.
 /// - The filter draws a value, but lacks this input, or its first output is not a picture.
+/// - A doubt is empty or ends with a full stop: pages write it after "if".
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

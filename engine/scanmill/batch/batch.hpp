@@ -19,6 +19,7 @@
 #include "scanmill/data/transform.hpp"
 #include "scanmill/gate/gate.hpp"
 #include "scanmill/plan/plan.hpp"
+#include "scanmill/plan/refusal.hpp"
 
 namespace scanmill {
 
@@ -55,16 +56,17 @@ struct BatchScan {
     std::vector<std::filesystem::path> views;  ///< the files of an object, sorted by name; empty for a scan
     Position position;  ///< position of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    /// For a scan with {stem} replaced; for an object as written, to be replaced for each view. Empty: from the
-    /// workflow or the file.
-    std::string frame;
+    std::string frame;  ///< as written; {stem} is that of each view. Empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
-    std::string refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run
+    Refusal refusal;  ///< why the cells of the scan fail in every workflow: its pose was refused; empty: they run
+    /// By parameter: why a setting has no file. Fails the cells of workflows with this parameter.
+    std::map<std::string, Refusal> missing_settings;
     /// The poses of an object's views: those that the batch names, else those beside the views. check_batch() uses the
     /// latter only where a workflow takes poses and no setting gives them.
     std::filesystem::path poses_file;
-    std::string poses_refusal;  ///< why the poses beside the views cannot be used
+    Refusal poses_refusal;  ///< why the poses beside the views cannot be used
+    std::string idle_poses;  ///< ObjectPoses::idle
     Position poses_position;  ///< position of the key `poses`; line 0: poses beside the views
     BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures
@@ -129,6 +131,8 @@ struct BatchPart {
     std::size_t workflow = 0;  ///< index into Batch::workflows
     std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; empty for a workflow without inputs
     std::vector<std::string> only{};  ///< names of the variants to run; empty: all
+    /// By index into Batch::scans: why the cells of a scan fail in this workflow only, as poses that it cannot take.
+    std::map<std::size_t, Refusal> refusals{};
     std::string shape{};  ///< equal for parts whose plans differ at most in the poses of their objects
 };
 
@@ -150,6 +154,8 @@ struct CheckedBatch {
     /// The number of cells: for every part, its variants times its runs. A run takes one scan, one object, a list of
     /// scans, or no scan.
     std::size_t cells() const;
+    /// Why the cells of a scan fail in this part; empty: they run. `scan`: index into Batch::scans.
+    const Refusal& refusal(const BatchPart& part, std::size_t scan) const;
     /// Whether the part has one run for every scan or object.
     bool has_run_per_scan(const BatchPart& part) const;
 };

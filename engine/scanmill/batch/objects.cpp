@@ -25,12 +25,14 @@ bool has_format(const fs::path& file, const Fits& fits) {
 }
 
 /// Whether files with this extension may hold points or a mesh. Formats that only read have no writers.
-bool may_be_view(const fs::path& file) {
-    return has_format(file, [](const Format& format) {
+bool may_be_view(const fs::path& name) {
+    return has_format(file_view(name).file, [](const Format& format) {
         return !format.is_refused && (format.writers.empty() || format.writer(kind_of<PointCloud>()) ||
                                       format.writer(kind_of<TriangleMesh>()));
     });
 }
+
+bool is_text(const fs::path& file) { return extension_of(file) == "txt"; }
 
 bool may_hold_several_views(const fs::path& file) {
     return has_format(file, [](const Format& format) { return format.count_views != nullptr; });
@@ -76,7 +78,7 @@ Listed listed(const fs::path& folder) {
 }
 
 /// The reason why the poses do not fit the views; empty if they fit. `file`: the file of the poses, for messages.
-std::string misfit(const std::vector<ScanPose>& poses, const fs::path& file, const ObjectFolder& object) {
+Refusal misfit(const std::vector<ScanPose>& poses, const fs::path& file, const ObjectFolder& object) {
     std::vector<std::string> names, views;
     for (const ScanPose& pose : poses) names.push_back(pose.scan);
     for (const fs::path& view : object.views) views.push_back(view.filename().string());
@@ -85,16 +87,16 @@ std::string misfit(const std::vector<ScanPose>& poses, const fs::path& file, con
     };
     for (const fs::path& view : object.views)
         if (std::ranges::none_of(poses, [&](const ScanPose& pose) { return fits(pose, view); }))
-            return fmt::format("'{}' has no pose of the view '{}' of the object '{}'; it has poses of {}{}",
-                               file.string(), view.filename().string(), object.name(), enumerated(names),
-                               did_you_mean(view.filename().string(), names));
+            return {fmt::format("'{}' has no pose of the view '{}' of the object '{}'; it has poses of {}{}",
+                                file.string(), view.filename().string(), object.name(), enumerated(names),
+                                did_you_mean(view.filename().string(), names)),
+                    "add the pose of the view, or move the view to another folder"};
     for (const ScanPose& pose : poses)
         if (!pose.refused && std::ranges::none_of(object.views, [&](const fs::path& view) { return fits(pose, view); }))
-            return fmt::format(
-                "'{}' has a pose of '{}', which is not among the {} of the object '{}'; add the view, remove its pose, "
-                "or "
-                "set the parameter `poses` to this file, which passes over poses of other views",
-                file.string(), pose.scan, count_text(views.size(), "view", "views"), object.name());
+            return {fmt::format("'{}' has a pose of '{}', which is not among the {} of the object '{}'", file.string(),
+                                pose.scan, count_text(views.size(), "view", "views"), object.name()),
+                    "add the view, remove its pose, or set the parameter `poses` to this file, which passes over poses "
+                    "of other views"};
     return {};
 }
 
@@ -117,6 +119,13 @@ bool has_results(const ObjectFolder& object) {
     return fs::exists(object.folder / records_file, ignored);
 }
 
+std::vector<fs::path> views_among(std::span<const fs::path> files) {
+    std::vector<fs::path> views;
+    std::ranges::copy_if(files, std::back_inserter(views), may_be_view);
+    if (!std::ranges::all_of(views, is_text)) std::erase_if(views, is_text);
+    return views;
+}
+
 ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
     ObjectFolder object{with_name(folder), {}};
     if (has_results(object))
@@ -124,15 +133,12 @@ ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
                     records_file)
             .hint("name a folder with the views alone, and another one for the results: -o DIR");
     const Listed found = listed(object.folder);
-    std::ranges::copy_if(found.files, std::back_inserter(object.views), may_be_view);
-    const auto is_text = [](const fs::path& file) { return extension_of(file) == "txt"; };
-    if (!std::ranges::all_of(object.views, is_text))
-        std::erase_if(object.views, [&](const fs::path& file) {
-            if (is_text(file) && warn)
+    object.views = views_among(found.files);
+    if (!object.views.empty() && !is_text(object.views.front()))
+        for (const fs::path& file : found.files)
+            if (warn && is_text(file))
                 warn(fmt::format("'{}' is not taken as a view, because it is a text among files of other formats",
                                  file.string()));
-            return is_text(file);
-        });
     if (object.views.empty())
         throw Error("the folder '{}' has no views: {}", object.folder.string(),
                     found.files.empty() ? "it has no files"
@@ -150,20 +156,29 @@ ObjectPoses poses_in(const fs::path& file, const ObjectFolder& object) {
         if (!has_names || std::ranges::any_of(object.views, may_hold_several_views)) return {file, {}};
         return {file, misfit(poses, file, object)};
     } catch (const Error& error) {
-        return {file, fmt::format("the object '{}' has no poses: {}", object.name(), error.sentence())};
+        return {file,
+                {fmt::format("the object '{}' has no poses: {}", object.name(), error.sentence()),
+                 error.hint().empty() ? "correct the file of poses, or remove it" : error.hint()}};
     }
 }
 
 ObjectPoses poses_beside(const ObjectFolder& object) {
-    if (std::ranges::any_of(object.views, may_hold_several_views)) return {};
+    const auto own = std::ranges::find_if(object.views, may_hold_several_views);
     std::vector<fs::path> found;
     for (const fs::path& file : listed(object.folder).files)
         if (is_poses_file(file)) found.push_back(file);
     if (found.empty()) return {};
+    if (own != object.views.end())
+        return {{},
+                {},
+                fmt::format("the object '{}' takes the poses in its views, as '{}'; the file of poses '{}' is not used "
+                            "unless `poses` names it",
+                            object.name(), own->filename().string(), found.front().string())};
     if (found.size() > 1)
         return {{},
-                fmt::format("the object '{}' has {} files of poses, '{}' and '{}'; give one as `poses`", object.name(),
-                            found.size(), found[0].filename().string(), found[1].filename().string())};
+                {fmt::format("the object '{}' has {} files of poses, '{}' and '{}'", object.name(), found.size(),
+                             found[0].filename().string(), found[1].filename().string()),
+                 "give one as `poses`"}};
     return poses_in(found.front(), object);
 }
 

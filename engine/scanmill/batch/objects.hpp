@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scanmill/formats/common/format.hpp"
+#include "scanmill/plan/refusal.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
 namespace scanmill {
@@ -32,15 +33,20 @@ std::vector<ObjectFolder> objects_of(std::span<const std::filesystem::path> file
 /// Whether a run wrote its results into the folder. They do not count as views.
 bool has_results(const ObjectFolder& object);
 
-/// The object of a folder. All its files with the extension of a format of points or meshes are views; hidden files are
-/// not, and beside other views texts (.txt) are not, with a warning. Throws Error if there are none, if has_results(),
+/// The files that count as views: those with the extension of a format of points or meshes. Texts (.txt) do only if no
+/// other file does.
+std::vector<std::filesystem::path> views_among(std::span<const std::filesystem::path> files);
+
+/// The object of a folder, with views_among() its files that are not hidden. Warns about texts that do not count.
+/// Throws Error if there are none, if has_results(),
 /// or if the folder cannot be read.
 ObjectFolder object_in(const std::filesystem::path& folder, const OnWarning& warn = {});
 
 /// The file with the poses of an object's views, or the reason why its cells fail. Both are empty without poses.
 struct ObjectPoses {
     std::filesystem::path file;
-    std::string refusal;
+    Refusal refusal;
+    std::string idle{};  ///< a warning about a file of poses beside the views that is not used; empty without one
 };
 
 /// The poses for the views of an object, in `file`. Refused if the file cannot be read, if a view has no pose in it, or
@@ -48,8 +54,8 @@ struct ObjectPoses {
 /// files may hold several views.
 ObjectPoses poses_in(const std::filesystem::path& file, const ObjectFolder& object);
 
-/// The poses in the file beside the views. Refused if there are two such files, or if poses_in() refuses it. None for
-/// views in formats whose files may hold several views, which have poses of their own.
+/// The poses in the file beside the views. Refused if there are two such files, or if poses_in() refuses it. Views in
+/// formats whose files may hold several views have poses of their own; a file beside them is `idle`.
 ObjectPoses poses_beside(const ObjectFolder& object);
 
 /// Whether the workflow has the parameter for a file of poses.

@@ -180,6 +180,7 @@ fs::path without_detours(const fs::path& file) {
 }
 
 const std::string pose_label = "the pose";
+constexpr const char* missing_file_hint = "add the file, or correct its path in the batch";
 
 /// Reads the numbers of `node` into `values`; false after an error.
 bool read_numbers(const YamlNode& node, std::span<double> values, std::string_view expected, Diagnostics& diagnostics) {
@@ -315,7 +316,7 @@ private:
             std::string text;
             text_into(text, diagnostics_)(found);
             check_stem_template(text, "the frame", found.value.position, diagnostics_);
-            for (BatchScan& scan : scans()) scan.frame = scan.is_object() ? text : with_stem(text, scan.file);
+            for (BatchScan& scan : scans()) scan.frame = text;
         };
         const auto invalid = [&](const YamlEntry& found) {
             InvalidRows rule = InvalidRows::by_format;
@@ -326,8 +327,7 @@ private:
             }
         };
         const auto set = [&](const YamlEntry& found) {
-            const Settings settings = parse_settings(found.value, diagnostics_);
-            for (BatchScan& scan : scans()) scan.settings = settings_of(scan, settings);
+            add_settings(parse_settings(found.value, diagnostics_), scans());
         };
         read_mapping(node, "a scan",
                      {{"by", by},
@@ -377,7 +377,10 @@ private:
         return scan;
     }
 
+    /// Adds the objects whose folders hold views. Other files that the path matches, as files of poses, are left out.
     void add_objects(const std::vector<ObjectFolder>& objects, Position position) {
+        std::vector<fs::path> others;
+        bool has_views = false;
         const auto normal = [](const fs::path& folder) {
             return (folder.empty() ? fs::path(".") : folder).lexically_normal();
         };
@@ -395,13 +398,31 @@ private:
                                                  object.folder.string(), records_file));
                 continue;
             }
+            const ObjectFolder views{object.folder, views_among(object.views)};
+            std::ranges::set_difference(object.views, views.views, std::back_inserter(others));
+            if (views.views.empty()) continue;
+            has_views = true;
             if (!is_new(object.folder, position, "; give all views of an object in one entry")) continue;
             BatchScan& scan = add_scan(object.folder, position);
-            scan.views = object.views;
-            const ObjectPoses beside = poses_beside(object);
+            scan.views = views.views;
+            const ObjectPoses beside = poses_beside(views);
             scan.poses_file = beside.file;
             scan.poses_refusal = beside.refusal;
+            scan.idle_poses = beside.idle;
         }
+        if (others.empty()) return;
+        const std::string more =
+            others.size() > 1 ? " and " + count_text(others.size() - 1, "more match", "more matches") : "";
+        if (has_views)
+            diagnostics_.warning(
+                position, fmt::format("'{}'{} {} not taken as {}; expected a path that matches only scans, as in "
+                                      "objects/*/*.ply",
+                                      others.front().string(), more, others.size() > 1 ? "are" : "is",
+                                      others.size() > 1 ? "views" : "a view"));
+        else
+            diagnostics_.error(position, "'{}'{} {} by {} extension; expected views, as in objects/*/*.ply",
+                               others.front().string(), more, others.size() > 1 ? "are not scans" : "is not a scan",
+                               others.size() > 1 ? "their" : "its");
     }
 
     /// Collects sentences about many scans. Only the first ten are reported.
@@ -581,34 +602,60 @@ private:
             try {
                 poses = poses_in(only_file_for(scan, *path, warn), {scan.file, scan.views});
             } catch (const Error& error) {
-                poses.refusal = fmt::format("the object '{}' has no poses: {}", scan.name(), error.sentence());
+                poses.refusal = {fmt::format("the object '{}' has no poses: {}", scan.name(), error.sentence()),
+                                 missing_file_hint};
             }
             scan.poses_file = poses.file;
             scan.poses_refusal = poses.refusal;
         }
     }
 
-    /// The settings of a scan. Texts that contain {stem} or {folder} are replaced; such a text with wildcards is the
-    /// only file that matches.
-    Settings settings_of(BatchScan& scan, Settings settings) {
-        for (auto& [name, value] : settings)
-            for (WrittenValue& written : value.values)
-                for (std::string& item : written.literal.items) {
-                    if (item.find("{stem}") == std::string::npos && item.find("{folder}") == std::string::npos)
-                        continue;
-                    const auto warn = [&](std::string text) { diagnostics_.warning(value.position, std::move(text)); };
-                    try {
-                        item = has_wildcards(item) ? path_from(folder_, only_file_for(scan, item, warn)).string()
-                                                   : with_placeholders(item, [&](const std::string& each) {
-                                                         return value_of(scan, each);
-                                                     });
-                    } catch (const Error& error) {
-                        scan.refusal =
-                            fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence());
-                        warn(scan.refusal);
+    static bool is_template(const std::string& text) {
+        return text.find("{stem}") != std::string::npos || text.find("{folder}") != std::string::npos;
+    }
+
+    /// Whether the texts that contain {stem} or {folder} have no other placeholders. If not, reports these.
+    bool check_templates(const Settings& settings) {
+        const std::size_t before = diagnostics_.errors();
+        for (const auto& [name, value] : settings)
+            for (const WrittenValue& written : value.values)
+                for (const std::string& item : written.literal.items)
+                    if (is_template(item))
+                        check_path_template(item, fmt::format("the setting '{}'", name), written.position,
+                                            diagnostics_);
+        return diagnostics_.errors() == before;
+    }
+
+    /// Adds the settings to every scan. Texts that contain {stem} or {folder} are replaced; such a text with wildcards
+    /// is the only file that matches.
+    void add_settings(const Settings& settings, std::span<BatchScan> scans) {
+        for (BatchScan& scan : scans) scan.settings = settings;
+        if (!check_templates(settings)) return;
+        for (const auto& [name, value] : settings) {
+            std::set<std::string> warnings;  // about folders that the patterns of several scans visit, once
+            const auto visit = [&](std::string sentence) { warnings.insert(std::move(sentence)); };
+            Complaints complaints;
+            for (BatchScan& scan : scans)
+                for (WrittenValue& written : scan.settings.at(name).values)
+                    for (std::string& item : written.literal.items) {
+                        if (!is_template(item)) continue;
+                        try {
+                            item = has_wildcards(item) ? path_from(folder_, only_file_for(scan, item, visit)).string()
+                                                       : with_placeholders(item, [&](const std::string& each) {
+                                                             return value_of(scan, each);
+                                                         });
+                        } catch (const Error& error) {
+                            Refusal refusal{fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name,
+                                                        error.sentence()),
+                                            missing_file_hint};
+                            complaints.add(refusal.text());
+                            scan.missing_settings.insert_or_assign(name, std::move(refusal));
+                        }
                     }
-                }
-        return settings;
+            const auto warn = [&](std::string text) { diagnostics_.warning(value.position, std::move(text)); };
+            for (const std::string& warning : warnings) warn(warning);
+            complaints.report(fmt::format("the file for `{}`", name), warn);
+        }
     }
 
     void pose(const YamlEntry& entry, std::span<BatchScan> scans) {
@@ -651,10 +698,10 @@ private:
 
     /// The other scans still run, so this is a warning.
     void refuse(BatchScan& scan, const std::string& reason, const Position& position) {
-        scan.refusal = fmt::format(
-            "'{}': the scan '{}' has no pose, because it was refused: {}; register the views again, or remove the scan",
-            scan.pose_file.string(), scan.file.filename().string(), reason);
-        diagnostics_.warning(position, scan.refusal);
+        scan.refusal = {fmt::format("'{}': the scan '{}' has no pose, because it was refused: {}",
+                                    scan.pose_file.string(), scan.file.filename().string(), reason),
+                        "register the views again, or remove the scan"};
+        diagnostics_.warning(position, scan.refusal.text());
     }
 
     fs::path folder_;

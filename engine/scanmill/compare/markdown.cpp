@@ -72,6 +72,7 @@ std::string markdown(const Comparison& comparison, const std::string& metric) {
     std::string text = fmt::format("### {}: {}\n\n{}\n\n{}\n\n", plain(comparison.batch), name_of(comparison.verdict),
                                    plain(counts_text(comparison)), plain(runs_text(comparison)));
     for (const auto& [name, fact] : facts_of(comparison)) text += fmt::format("- {}: {}\n", name, plain(fact));
+    text += table_text("By rule and variant", rule_table(comparison, most_rows));
     text += table_text("What changed", change_table(comparison, most_rows));
     text += table_text("Why", reason_table(comparison, most_rows));
     text += table_text(metric, matrix(comparison, metric, most_rows));

@@ -83,6 +83,78 @@ bool is_trouble(Verdict verdict) {
            verdict == Verdict::doubtful;
 }
 
+/// The values that one rule judges in the cells of one variant.
+struct RuleRow {
+    std::string metric, rule, variant;
+    std::vector<double> values, shares;
+    std::vector<CellValue> shown;  ///< the values with their units
+    std::size_t regressed = 0;
+};
+
+/// The change of the cell's value against the accepted run, as a share; empty if there is nothing to compare with.
+std::optional<double> share_of_change(const Comparison& comparison, const CellComparison& cell, const CellValue& value,
+                                      const std::string& metric) {
+    if (is_cost(metric)) {
+        const auto cost = std::ranges::find(cell.costs, metric, &CostChange::cost);
+        return cost == cell.costs.end() ? std::nullopt : std::optional(cost->share);
+    }
+    if (!comparison.accepted || cell.verdict == Verdict::is_new || cell.verdict == Verdict::failed) return std::nullopt;
+    for (const MetricChange& change : cell.metrics)
+        if (change.metric == value.metric.name && change.source == value.source)
+            return change.accepted ? std::optional(change.share) : std::nullopt;
+    return 0;
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+double median_share(const RuleRow& row) { return row.shares.empty() ? 0 : median_of(row.shares); }
+
+/// The median value, with the unit if all cells share it.
+std::string median_text(const RuleRow& row) {
+    if (row.values.empty()) return "-";
+    const double median = median_of(row.values);
+    if (is_cost(row.metric)) return cost_text(row.metric, median);
+    const CellValue& first = row.shown.front();
+    const Metric metric{"", median, first.metric.unit};
+    const bool has_one_unit = std::ranges::all_of(
+        row.shown, [&](const CellValue& value) { return value.lengths == first.lengths; });
+    return has_one_unit ? display(metric, first.lengths) : display(metric);
+}
+
+/// The rows of rule_table(), in the order of the rules and of the variants. Without `by_variant`, one row per rule.
+std::vector<RuleRow> rule_rows(const Comparison& comparison, bool by_variant) {
+    const bool with_workflow = has_several_workflows(comparison);
+    std::vector<GateRule> rules;
+    for (const GateRule& rule : comparison.gate.rules)
+        if (rule.metric != "outputs") rules.push_back(rule);
+    if (rules.empty()) rules.push_back({default_metric(comparison), "", {}});
+    std::vector<RuleRow> rows;
+    for (const GateRule& rule : rules) {
+        std::map<std::string, std::size_t> row_of;  // by variant
+        for (const CellComparison& cell : comparison.cells) {
+            const std::string variant = by_variant ? variant_text(cell, with_workflow) : "all";
+            const auto [found, is_new] = row_of.emplace(variant, rows.size());
+            if (is_new) rows.push_back({rule.metric, rule.text, variant, {}, {}, {}, 0});
+            RuleRow& row = rows[found->second];
+            for (const MetricChange& change : cell.metrics)
+                row.regressed += change.effect == Effect::regression && change.rule.starts_with(rule.text) &&
+                                 (change.metric == rule.metric || change.source + "." + change.metric == rule.metric);
+            for (const CostChange& change : cell.costs)
+                row.regressed += change.effect == Effect::regression && change.cost == rule.metric;
+            const auto value = number_of(cell, rule.metric);
+            if (!value) continue;
+            row.values.push_back(value->metric.value);
+            row.shown.push_back(*value);
+            if (const auto share = share_of_change(comparison, cell, *value, rule.metric)) row.shares.push_back(*share);
+        }
+    }
+    return rows;
+}
+
 /// The scans or the variants of a matrix, in the order of the cells.
 struct MatrixAxis {
     std::vector<std::string> names;
@@ -139,6 +211,25 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comp
         facts.emplace_back("filters", fmt::format("{}", fmt::join(comparison.filters, ", ")));
     for (const std::string& note : comparison.notes) facts.emplace_back("note", note);
     return facts;
+}
+
+ReportTable rule_table(const Comparison& comparison, std::size_t most) {
+    std::vector<RuleRow> rows = rule_rows(comparison, true);
+    if (rows.size() > most) rows = rule_rows(comparison, false);
+    const std::size_t left_out = rows.size() - std::min(rows.size(), most);
+    rows.resize(rows.size() - left_out);
+    ReportTable table{{"metric", "rule", "variant", "cells", "median", "median change", "regressed"}, {}, {}};
+    for (const RuleRow& row : rows) {
+        const double share = median_share(row);
+        table.rows.push_back({row.metric, row.rule.empty() ? "-" : row.rule, row.variant,
+                              std::to_string(row.values.size()), median_text(row),
+                              row.shares.empty()     ? "-"
+                              : std::isfinite(share) ? share_text(share)
+                                                     : "changed",
+                              std::to_string(row.regressed)});
+    }
+    if (left_out > 0) table.rest = fmt::format("and {}", count_text(left_out, "more rule", "more rules"));
+    return table;
 }
 
 ReportTable change_table(const Comparison& comparison, std::size_t most) {

@@ -28,6 +28,12 @@ std::string runs_text(const Comparison& comparison);
 /// properties without a text are left out.
 std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comparison);
 
+/// A table with a row per rule of the gate and variant: the number of cells that have the value, its median, the median
+/// change against the accepted run, and the number of regressions. Without rules, the rows are for default_metric().
+/// Cells without an accepted value do not count in the median change. The table has at most `most` rows; if that is too
+/// few, one row per rule is for all variants.
+ReportTable rule_table(const Comparison& comparison, std::size_t most);
+
 /// A table of the changes in the order of what_changed(), regressions first. It has at most `most` rows.
 ReportTable change_table(const Comparison& comparison, std::size_t most);
 

@@ -92,7 +92,34 @@ std::string remarks(const FilterSpec& spec) {
     if (spec.measures) list += fmt::format("- Measures: {}\n", measures_text(*spec.measures));
     if (spec.draws) list += fmt::format("- Draws: {}\n", draws_text(*spec.draws));
     if (!spec.adds.empty()) list += fmt::format("- Columns that it may add: `{}`\n", fmt::join(spec.adds, "`, `"));
-    return list.empty() ? list : "\n" + list;
+    return "\n" + list;
+}
+
+/// "points, mesh": the kinds of the ports, without those that only `in` connects.
+std::string kinds_of(const std::vector<PortSpec>& ports) {
+    std::string text;
+    for (const PortSpec& port : ports)
+        text += fmt::format("{}{}{}", text.empty() ? "" : ", ", kinds_text(port), port.list ? " (a list)" : "");
+    return text.empty() ? "nothing" : text;
+}
+
+/// The name as a link to the page that `link` names, with `{filter}` for the name and `{folder}` for the name with
+/// underscores.
+std::string linked(const std::string& name, std::string_view link) {
+    std::string folder = name, page(link);
+    std::ranges::replace(folder, '-', '_');
+    for (const auto& [placeholder, text] : {std::pair("{filter}", name), std::pair("{folder}", folder)})
+        if (const std::size_t at = page.find(placeholder); at != std::string::npos)
+            page.replace(at, std::string_view(placeholder).size(), text);
+    return fmt::format("[{}]({})", name, page);
+}
+
+std::string doubts_list(const FilterSpec& spec) {
+    if (spec.doubts.empty()) return {};
+    std::string list = "\n## Doubts\n\nThe result is doubtful if\n\n";
+    for (std::size_t i = 0; i < spec.doubts.size(); ++i)
+        list += fmt::format("- {}{}\n", spec.doubts[i], i + 1 < spec.doubts.size() ? ";" : ".");
+    return list;
 }
 
 /// The first filter whose first output has this kind and whose required inputs can be read from files.
@@ -176,13 +203,16 @@ std::string example_workflow(const FilterSpec& spec, const FilterLibrary& librar
     return example;
 }
 
+std::string filter_reference(const FilterSpec& spec) {
+    const std::string parts = ports_table("Takes", "port", spec.inputs) +
+                              ports_table("Gives", "port", spec.outputs) + parameters_table(spec.parameters) +
+                              metrics_table(spec.metrics) + doubts_list(spec) + "\n## Details\n" + remarks(spec);
+    return parts + fmt::format("- Source: {}.\n- Version {}.\n", spec.source, spec.version);
+}
+
 std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
-    return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
-                       spec.version) +
-           remarks(spec) + ports_table("Takes", "port", spec.inputs) +
-           ports_table("Gives (the step's name alone refers to the first)", "port", spec.outputs) +
-           parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
-           example_workflow(spec, library) + "```\n";
+    return fmt::format("# {}\n\n{}\n{}\n{}\n## Example\n\n```yaml\n{}```\n", spec.name, generated, spec.summary,
+                       filter_reference(spec), example_workflow(spec, library));
 }
 
 std::string stream_text(const FilterSpec& spec) {
@@ -212,11 +242,25 @@ std::string draws_text(const DrawSpec& draws) {
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }
 
-std::string filter_index(const std::vector<FilterSpec>& specs) {
-    std::string page = fmt::format("# Filters\n\n{}\n| filter | what it does |\n|---|---|\n", generated);
+std::string filter_table(const std::vector<FilterSpec>& specs, std::string_view link) {
+    std::string table = "\n| filter | takes → gives | what it does |\n|---|---|---|\n";
     for (const FilterSpec& spec : specs)
-        page += fmt::format("| [{0}]({0}.md) | {1} |\n", spec.name, cell(spec.summary));
-    return page;
+        table += fmt::format("| {} | {} → {} | {} |\n", linked(spec.name, link), kinds_of(spec.inputs),
+                             kinds_of(spec.outputs), cell(spec.summary));
+    return table + "\n";
+}
+
+std::string doubt_table(const std::vector<FilterSpec>& specs, std::string_view link) {
+    std::string table = "\n| filter | doubts its result if |\n|---|---|\n";
+    for (const FilterSpec& spec : specs)
+        if (!spec.doubts.empty())
+            table += fmt::format("| {} | {} |\n", linked(spec.name, link),
+                                 cell(fmt::format("{}", fmt::join(spec.doubts, "; or<br>"))));
+    return table + "\n";
+}
+
+std::string filter_index(const std::vector<FilterSpec>& specs) {
+    return fmt::format("# Filters\n\n{}{}", generated, filter_table(specs, "{filter}.md"));
 }
 
 }  // namespace scanmill

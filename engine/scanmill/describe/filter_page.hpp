@@ -14,9 +14,16 @@ namespace scanmill {
 /// check`.
 std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library);
 
-/// The filter's page: ports, parameters, metrics and the example.
+/// The sections of the filter's page that come from its declaration: ports, parameters, metrics, doubts, details. They
+/// begin with an empty line.
+std::string filter_reference(const FilterSpec& spec);
+/// The filter's page: filter_reference() and the example.
 std::string filter_page(const FilterSpec& spec, const FilterLibrary& library);
 
+/// Tables of the filters: what they take, give and do; and when they doubt their results. `link` is the page of a
+/// filter, with `{filter}` for its name and `{folder}` for its name with underscores.
+std::string filter_table(const std::vector<FilterSpec>& specs, std::string_view link);
+std::string doubt_table(const std::vector<FilterSpec>& specs, std::string_view link);
 /// The page that lists the pages of these filters.
 std::string filter_index(const std::vector<FilterSpec>& specs);
 

@@ -145,6 +145,9 @@ Json dry_run_schema() {
                               {"in", list_of(input)},
                               {"file?", described("The file that the node reads; absent for other nodes.", text())},
                               {"streamed?", flag()},
+                              {"parameter-files?", described("The files that the parameters of the step name, such as "
+                                                             "one of poses; absent without any.",
+                                                             list_of(text()))},
                               {"unreadable?", described("Why the file cannot be read.", text())},
                               {"cached", flag()},
                               {"why?", described("Why the node will run.", text())}});
@@ -162,6 +165,7 @@ Json document_of(const char* title) {
 
 Json run_schema() { return document_of<RunDocument>("scanmill run"); }
 Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR"); }
+Json runs_prune_schema() { return document_of<PrunedDocument>("scanmill runs DIR --prune"); }
 Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID"); }
 
 Json report_schema() {
@@ -197,7 +201,7 @@ Json batch_event_schema() {
     return schema;
 }
 
-constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", list_schema},
+constexpr std::array<std::pair<const char*, Json (*)()>, 16> outputs{{{"list", list_schema},
                                                                       {"show", show_schema},
                                                                       {"show-example", show_example_schema},
                                                                       {"check", check_schema},
@@ -205,6 +209,7 @@ constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", l
                                                                       {"batch-event", batch_event_schema},
                                                                       {"dry-run", dry_run_schema},
                                                                       {"runs", runs_schema},
+                                                                      {"runs-prune", runs_prune_schema},
                                                                       {"runs-show", runs_show_schema},
                                                                       {"info", info_schema},
                                                                       {"measure", measure_schema},

@@ -19,6 +19,7 @@
 #include "scanmill/data/transform.hpp"
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/plan/plan.hpp"
+#include "scanmill/plan/refusal.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "scanmill/record/fields.hpp"
 
@@ -33,9 +34,11 @@ struct ScanFile {
     /// The views of an object, which feed the workflow's first input in one run.
     std::vector<ScanFile> views;
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
-    std::string frame;                      ///< empty: from the workflow or the file
-    std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
-    std::string refusal;  ///< why the scan must not be read, as a refused pose; if not empty, reading fails with it
+    /// {stem} in it becomes the stem of the file, or of the view of a file that holds several; see with_stem(). Empty:
+    /// from the workflow or the file.
+    std::string frame;
+    std::optional<RigidTransform> pose;  ///< applied after reading; `to` names the new frame
+    Refusal refusal;  ///< as a refused pose; if not empty, reading fails with it
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
     /// The scan's own files for the workflow's other inputs.
     std::map<std::string, std::vector<ScanFile>> inputs{};
@@ -92,7 +95,7 @@ struct LeafSource {
     InvalidRows invalid = InvalidRows::by_format;  ///< only for points
     bool is_streamed = false;  ///< read in chunks if the file allows it; not in the key, because results are equal
     std::vector<Kind> also{};  ///< other kinds that the file may hold
-    std::string refusal{};  ///< ScanFile::refusal
+    Refusal refusal{};  ///< ScanFile::refusal
     u32 view = 0;  ///< from 1, of a file that holds several; 0: the whole file
 
     /// The name of what is read, for messages and read_file(): the file, or FILE#2.

@@ -61,7 +61,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("kind", name_of(leaf.kind))
         .field("unit", symbol(leaf.unit))
         .field("frame", leaf.frame)
-        .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.refusal)
+        .field("pose", leaf.pose ? text_of(*leaf.pose) : leaf.refusal.sentence)
         .field("invalid", name_of(leaf.invalid));
     if (leaf.view > 0) key.field("view", std::to_string(leaf.view));
     for (const Kind kind : leaf.also) key.field("also", name_of(kind));
@@ -327,13 +327,13 @@ private:
         node.leaf.view = source.view;
         const FileContents::Content& content = contents_.of(source.file);
         node.leaf.content = content.hash;
-        node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.refusal;
+        node.unreadable = !content.why_unreadable.empty() ? content.why_unreadable : file.refusal.text();
         node.leaf.kind = declared.kind;
         node.leaf.also = declared.also;
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
                          : request_->unit != LengthUnit::unknown ? request_->unit
                                                                  : declared.unit;
-        node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
+        node.leaf.frame = with_stem(!file.frame.empty() ? file.frame : declared.frame, file.path);
         node.leaf.pose = file.pose;
         node.leaf.refusal = file.refusal;
         if (declared.kind == kind_of<PointCloud>() ||

@@ -263,11 +263,58 @@ std::vector<RunSummary> RunRecords::summaries(std::optional<std::int64_t> id) co
 
 RunSummary RunRecords::summary(std::int64_t id) const {
     if (std::vector<RunSummary> found = summaries(id); !found.empty()) return std::move(found.front());
-    const std::int64_t last = about(database_->file, [&] {
-        return database_->sqlite.execAndGet("SELECT COALESCE(MAX(id), 0) FROM run").getInt64();
-    });
+    const auto number = [&](const char* which) {
+        return about(database_->file, [&] {
+            return database_->sqlite.execAndGet(fmt::format("SELECT COALESCE({}(id), 0) FROM run", which)).getInt64();
+        });
+    };
+    const std::int64_t first = number("MIN"), last = number("MAX");
     throw Error("there is no run {} in '{}'; {}", id, database_->file,
-                last == 0 ? "it has no runs" : fmt::format("it has the runs 1 to {}", last));
+                last == 0 ? "it has no runs" : fmt::format("it has the runs {} to {}", first, last));
+}
+
+std::vector<RecordedFile> RunRecords::files() const {
+    return about(database_->file, [&] {
+        SQLite::Statement rows(
+            database_->sqlite,
+            "SELECT cell.parent, CASE output.evidence WHEN '' THEN output.file ELSE output.evidence END, output.sha256, "
+            "output.bytes FROM cell_outputs AS output JOIN cell ON cell.id = output.parent "
+            "WHERE output.outcome = 'ok' OR output.evidence <> '' ORDER BY cell.parent, output.id");
+        std::vector<RecordedFile> files;
+        while (rows.executeStep())
+            files.push_back({rows.getColumn(0).getInt64(), rows.getColumn(1).getString(), rows.getColumn(2).getString(),
+                             static_cast<std::uint64_t>(rows.getColumn(3).getInt64())});
+        return files;
+    });
+}
+
+namespace {
+
+/// Removes the rows of `table` that fulfil the condition, after the rows of other tables that belong to them.
+void remove_rows(SQLite::Database& database, const std::string& table, const std::string& condition) {
+    SQLite::Statement owned(database,
+                            "SELECT name FROM sqlite_master JOIN pragma_foreign_key_list(sqlite_master.name) AS key "
+                            "WHERE sqlite_master.type = 'table' AND key.\"table\" = ?");
+    owned.bind(1, table);
+    while (owned.executeStep())
+        remove_rows(database, owned.getColumn(0).getString(),
+                    "parent IN (SELECT id FROM " + table + " WHERE " + condition + ")");
+    database.exec("DELETE FROM " + table + " WHERE " + condition);
+}
+
+}  // namespace
+
+void RunRecords::remove(const std::vector<std::int64_t>& runs, const std::function<void(std::string)>& warn) {
+    about(database_->file, [&] {
+        SQLite::Transaction transaction(database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
+        for (const std::int64_t run : runs) remove_rows(database_->sqlite, "run", fmt::format("id = {}", run));
+        transaction.commit();
+    });
+    try {
+        database_->sqlite.exec("VACUUM");
+    } catch (const SQLite::Exception& error) {
+        warn(fmt::format("the records '{}' did not shrink: {}", database_->file, error.what()));
+    }
 }
 
 std::vector<RunSummary> RunRecords::runs() const { return summaries(std::nullopt); }

@@ -2,12 +2,13 @@
 #pragma once
 /// The history of runs: one SQLite file per output folder, to which every run appends.
 ///
-/// Rows are never changed or removed. A run without an end is still running or was killed. The file may be on a network
+/// Rows are never changed, and removed only with their whole run. A run without an end is still running or was killed. The file may be on a network
 /// file system, because it uses a rollback journal. Any SQLite program can read it. Its tables derive from the fields
 /// of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with other fields refuses the file.
 /// The table `gate_verdict` is created for the first run that a gate judges; files without it are accepted.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,13 @@ struct PastStep {
     int filter_version = 0;
     Texts authored;
     bool done = true;  ///< false: the step failed or was skipped
+};
+
+/// A file that a run wrote: an output, or a failed result.
+struct RecordedFile {
+    std::int64_t run = 0;
+    std::string path, sha256;
+    std::uint64_t bytes = 0;
 };
 
 class RunRecords {
@@ -80,6 +88,12 @@ public:
     /// workflow, machine, threads and jobs of `like` and that measured costs; of these, the newest `most_past_runs`.
     static constexpr int most_past_runs = 20;
     std::vector<PastCosts> past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const;
+
+    /// The files that the runs wrote, in the order of the runs.
+    std::vector<RecordedFile> files() const;
+    /// Removes these runs with everything that belongs to them, and gives the space back to the file system. If that
+    /// fails, because the disk is full, warns: the next run then uses the space.
+    void remove(const std::vector<std::int64_t>& runs, const std::function<void(std::string)>& warn);
 
     /// All runs in the order of their numbers.
     std::vector<RunSummary> runs() const;

@@ -45,12 +45,32 @@ struct ListedRun {
     RunSummary summary;
     bool killed = false;
     std::vector<AcceptanceDocument> accepted;
+    std::uint64_t bytes = 0;
+    std::size_t gone = 0;
 };
 constexpr auto fields(const ListedRun*) {
     using R = ListedRun;
     return std::tuple{field("summary", &R::summary).flat(),
                       field("killed", &R::killed, "The run ended without an outcome.").optional(),
-                      field("accepted", &R::accepted).optional()};
+                      field("accepted", &R::accepted).optional(),
+                      field("bytes", &R::bytes,
+                            "Bytes of the files that the run wrote, that are there, and that no later run names."),
+                      field("gone", &R::gone, "Files that the run wrote, that are gone, and that no later run names.")
+                          .optional()};
+}
+
+/// What `scanmill runs DIR --prune` removed, or would remove.
+struct PrunedDocument {
+    std::vector<std::int64_t> runs;
+    std::vector<std::string> files;
+    std::uint64_t bytes = 0, records_before = 0, records_after = 0;
+};
+constexpr auto fields(const PrunedDocument*) {
+    using R = PrunedDocument;
+    return std::tuple{field("runs", &R::runs, "Numbers of the removed runs."), field("files", &R::files),
+                      field("bytes", &R::bytes, "Size of the removed files."),
+                      field("records-before", &R::records_before, "Size of the file with the records before."),
+                      field("records-after", &R::records_after, "Size of the file with the records now.")};
 }
 
 struct RunsDocument {

@@ -130,11 +130,13 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, LengthU
     return result;
 }
 
-void require_declared(const Outputs& outputs, const Metrics& metrics, const FilterSpec& spec) {
+void require_declared(const Outputs& outputs, const Context& context, const FilterSpec& spec) {
     const auto fail = [&](std::string what) {
         throw BrokenDeclaration(fmt::format("the filter {} {}", spec.name, what));
     };
-    for (const Metric& metric : metrics.values)
+    if (!context.doubts().empty() && spec.doubts.empty())
+        fail(fmt::format("doubts its result ({}), but declares no doubts", context.doubts().front().text));
+    for (const Metric& metric : context.metrics().values)
         if (!spec.metric(metric.name))
             fail(fmt::format("reported the metric '{}', which it does not declare", metric.name));
     for (const PortSpec& port : spec.outputs) {
@@ -221,7 +223,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
                 if (reason.length() == read.length()) throw reason;
             throw;
         }
-        require_declared(outputs, context.metrics(), step.spec);
+        require_declared(outputs, context, step.spec);
         doubt_inside_out(outputs, step.spec, context);
         record();
         return outputs;
@@ -242,7 +244,7 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 }
 
 Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped) {
-    if (!leaf.refusal.empty()) throw Error("{}", leaf.refusal);
+    if (!leaf.refusal.empty()) throw leaf.refusal.error();
     const ReadOptions options = reading(leaf, on_warning);
     Value value;
     LoadedFile loaded = leaf.also.empty() && leaf.kind == kind_of<TriangleMesh>()

@@ -132,7 +132,8 @@ void check_stem_template(const std::string& text, std::string_view what, Positio
 }
 
 std::string with_stem(const std::string& text, const std::filesystem::path& file) {
-    return with_placeholders(text, [&](const std::string&) { return stem_of(file); });
+    return with_placeholders(
+        text, [&](const std::string& name) { return name == "stem" ? stem_of(file) : "{" + name + "}"; });
 }
 
 void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics) {

@@ -61,6 +61,7 @@ std::string with_placeholders(const std::string& text, const std::function<std::
 
 /// The frames of a list of scans may contain {stem}, the scan's file name without folder and extension; see stem_of().
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
+/// The text with {stem} replaced. Other braces stay, because they are part of a file's name.
 std::string with_stem(const std::string& text, const std::filesystem::path& file);
 
 /// The paths of poses, truths and inputs of a list of scans may contain {stem} and {folder}; see folder_name().

@@ -143,6 +143,20 @@ TEST(Declare, ListOfChoices_HasItsChoicesAndDefaults) {
     EXPECT_THAT(sentence_of([&] { parse(rules, {{"densest", "near"}, true}); }), testing::HasSubstr("'near'"));
 }
 
+TEST(Declare, Doubts_AreClauses) {
+    const FilterDeclaration declared =
+        drawing_declaration()
+            .doubts({"the picture is empty"})
+            .run([](const Inputs&, const ViewParams&, Context&) { return Outputs(); });
+    FilterSpec spec = declared.spec;
+    EXPECT_THAT(spec.doubts, ElementsAre("the picture is empty"));
+    EXPECT_NO_THROW(require_sound(spec));
+    for (const char* wrong : {"", "The picture is empty."}) {
+        spec.doubts = {wrong};
+        EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("not a clause")) << wrong;
+    }
+}
+
 TEST(Declare, ListOfChoices_ReachesItsMember) {
     std::vector<Rule> seen;
     const FilterDeclaration declared =

@@ -231,9 +231,9 @@ TEST_F(BatchScans, WildcardsOfFurtherInputsWithoutAMatch_AreAWarning) {
 TEST_F(BatchScans, StemOfACompressedScan_HasNeitherExtension) {
     folder_.write("packed/part.ply.gz", "x");
     folder_.write("truth/part.stl", "x");
-    EXPECT_THAT(scans("[{path: packed/part.ply.gz, frame: 'f-{stem}', truth: 'truth/{stem}.stl'}]"), IsEmpty());
+    EXPECT_THAT(scans("[{path: packed/part.ply.gz, truth: {path: 'truth/{stem}.stl', frame: 'f-{stem}'}}]"), IsEmpty());
     EXPECT_EQ(batch_.scans[0].truth.files.front(), folder_ / "truth/part.stl");
-    EXPECT_EQ(batch_.scans[0].frame, "f-part");
+    EXPECT_EQ(batch_.scans[0].truth.frame, "f-part");
 }
 
 TEST_F(BatchScans, FolderOfAScan_IsAPlaceholderOfItsFiles) {
@@ -255,6 +255,21 @@ TEST_F(BatchScans, ManyMissingFiles_AreTenAndANumber) {
     const auto found = scans("[{path: many/*.ply, truth: 'truth/{stem}.stl'}]");
     ASSERT_THAT(found, SizeIs(11));
     EXPECT_THAT(found.back(), HasSubstr("3 more scans"));
+}
+
+TEST_F(BatchScans, ManyMissingFilesOfASetting_AreTenAndANumber) {
+    for (int i = 0; i < 13; ++i) folder_.write("many/" + std::to_string(i) + ".ply", "x");
+    const auto found = scans("[{path: many/*.ply, set: {n: '{stem}-*.txt'}}]");
+    ASSERT_THAT(found, SizeIs(11));
+    EXPECT_THAT(found.back(), AllOf(HasSubstr("3 more scans"), HasSubstr("`n`")));
+    EXPECT_THAT(batch_.scans[12].missing_settings, SizeIs(1));
+}
+
+TEST_F(BatchScans, UnknownPlaceholderBesideAKnownOne_IsAnErrorOfTheSetting) {
+    EXPECT_THAT(scans("[{path: scans/*.ply, set: {n: 'x-{stem}-{folde}.txt'}}]"),
+                ElementsAre(AllOf(StartsWith("b:3:"), testing::Not(HasSubstr("warning")), HasSubstr("the setting 'n'"),
+                                  HasSubstr("the unknown placeholder {folde}; it takes {stem} and {folder}"))));
+    EXPECT_THAT(scans("[{path: scans/*.ply, set: {n: '{folde}.txt'}}]"), IsEmpty()) << "a text, not a template";
 }
 
 TEST_F(BatchScans, PoseOfAFile_IsTheScansOwnOrTheOnlyOne) {
@@ -285,9 +300,10 @@ TEST_F(BatchScans, RefusedScan_IsAWarning_AndHasItsReason) {
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: p.json}]"),
                 ElementsAre(AllOf(StartsWith("b:3:35: warning: "), HasSubstr("'b.ply'"), HasSubstr("no-overlap"))));
     EXPECT_TRUE(batch_.scans[0].pose);
-    EXPECT_EQ(batch_.scans[0].refusal, "");
+    EXPECT_TRUE(batch_.scans[0].refusal.empty());
     EXPECT_FALSE(batch_.scans[1].pose);
-    EXPECT_THAT(batch_.scans[1].refusal, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+    EXPECT_THAT(batch_.scans[1].refusal.sentence, AllOf(HasSubstr("p.json"), HasSubstr("no-overlap")));
+    EXPECT_THAT(batch_.scans[1].refusal.hint, HasSubstr("register the views again"));
 }
 
 TEST_F(BatchScans, MatrixAndQuaternion_AreTheSameMotion) {

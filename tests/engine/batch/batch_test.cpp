@@ -43,7 +43,7 @@ gate: {hausdorff: +1 %, repeats: 2}
     const BatchScan& b = batch_.scans[1];
     EXPECT_EQ(b.position, (Position{5, 12}));
     EXPECT_EQ(b.unit, LengthUnit::millimetre);
-    EXPECT_EQ(b.frame, "f-b");
+    EXPECT_EQ(b.frame, "f-{stem}") << "as written";
     EXPECT_EQ(b.pose->translation, Vec3(2, 0, 0));
     EXPECT_EQ(b.pose->unit, LengthUnit::metre);
     EXPECT_EQ(b.pose->to, "part");

@@ -65,14 +65,28 @@ TEST_F(ObjectsBatch, PlaceholdersAreTheObjectsNameAndItsFolder) {
     EXPECT_EQ(a.settings.at("n").values[0].literal.items[0], "o/a/n-3.txt") << "from the batch file";
     EXPECT_EQ(a.settings.at("m").values[0].literal.items[0], "x-a");
     EXPECT_EQ(a.settings.at("k").values[0].literal.items[0], "{other}");
-    EXPECT_EQ(a.refusal, "");
-    EXPECT_THAT(batch_.scans[1].refusal, HasSubstr("n-*.txt"));
+    EXPECT_THAT(a.missing_settings, IsEmpty());
+    EXPECT_THAT(batch_.scans[1].missing_settings.at("n").sentence, HasSubstr("n-*.txt"));
 }
 
 TEST_F(ObjectsBatch, WorkflowOfSingleScans_RefusesObjects) {
     EXPECT_THAT(check_objects("{path: o/*/*.ply, by: folder}", "w.yaml"),
                 ElementsAre(AllOf(StartsWith("b:4:12: "), HasSubstr("takes one scan per run"),
                                   HasSubstr("the object 'a' has 2 views"), HasSubstr("`list: true`"))));
+}
+
+TEST_F(ObjectsBatch, PosesAndNotesThatAPathMatches_AreNotViews) {
+    for (const char* other : {"a/views.conf", "a/notes.md", "b/README.txt", "b/poses.json"})
+        folder_.write(std::string("o/") + other, "x");
+    EXPECT_THAT(scans("[{path: o/*/*, by: folder}]"),
+                ElementsAre(AllOf(StartsWith("b:3:"), HasSubstr("warning: "), HasSubstr("o/a/notes.md' and 3 more"))));
+    ASSERT_THAT(batch_.scans, SizeIs(2));
+    EXPECT_THAT(batch_.scans[0].views, ElementsAre(folder_ / "o/a/v1.ply", folder_ / "o/a/v2.ply"));
+    EXPECT_THAT(batch_.scans[1].views, ElementsAre(folder_ / "o/b/v1.ply"));
+    EXPECT_THAT(scans("[{path: o/a/*.conf, by: folder}]"),
+                ElementsAre(AllOf(HasSubstr("views.conf' is not a scan by its extension"), HasSubstr("*.ply"))));
+    EXPECT_THAT(batch_.scans, IsEmpty());
+    EXPECT_THAT(scans("[{path: o/b/*.txt, by: folder}]"), IsEmpty()) << "texts alone may be points";
 }
 
 TEST_F(ObjectsBatch, FilesInNoFolderOfTheirOwn_AreRefused) {
@@ -103,23 +117,25 @@ TEST_F(ObjectsBatch, FilesOfPosesBesideTheViews_GoByTheirNames) {
     folder_.write("o/b/made-poses.json", R"({"scanmill": 1, "poses": [{"scan": "v1", "rotation": [0, 0, 0, 1],
                                              "translation": [0, 0, 0]}]})");
     EXPECT_EQ(poses_beside(object).file, folder_ / "o/b/made-poses.json");
-    EXPECT_EQ(poses_beside(object).refusal, "");
+    EXPECT_TRUE(poses_beside(object).refusal.empty());
     folder_.write("o/b/other.conf", "x");
-    EXPECT_THAT(poses_beside(object).refusal, AllOf(HasSubstr("made-poses.json"), HasSubstr("other.conf")));
+    EXPECT_THAT(poses_beside(object).refusal.sentence, AllOf(HasSubstr("made-poses.json"), HasSubstr("other.conf")));
+    EXPECT_THAT(poses_beside(object).refusal.hint, HasSubstr("`poses`"));
 }
 
 TEST_F(ObjectsBatch, PosesOfCompressedViewsAndOfOthers_AreToldApart) {
     const std::filesystem::path file = folder_.write("p.conf", "bmesh v1.ply 0 0 0 0 0 0 1\nbmesh v2 0 0 0 0 0 0 1\n");
-    EXPECT_EQ(poses_in(file, {"o/a", {"o/a/v1.ply.gz", "o/a/v2.ply"}}).refusal, "");
-    EXPECT_THAT(poses_in(file, {"o/a", {"o/a/v1.ply"}}).refusal,
+    EXPECT_TRUE(poses_in(file, {"o/a", {"o/a/v1.ply.gz", "o/a/v2.ply"}}).refusal.empty());
+    EXPECT_THAT(poses_in(file, {"o/a", {"o/a/v1.ply"}}).refusal.sentence,
                 AllOf(HasSubstr("a pose of 'v2'"), HasSubstr("1 view of the object 'a'")));
-    EXPECT_THAT(poses_in(file, {"o/a", {"o/a/v1.ply", "o/a/v2.ply", "o/a/v3.ply"}}).refusal,
+    EXPECT_THAT(poses_in(file, {"o/a", {"o/a/v1.ply", "o/a/v2.ply", "o/a/v3.ply"}}).refusal.sentence,
                 AllOf(HasSubstr("no pose of the view 'v3.ply' of the object 'a'"), HasSubstr("v1.ply and v2")));
-    EXPECT_EQ(poses_in(file, {"o/a", {"o/a/all.ptx"}}).refusal, "") << "the file may hold views of any name";
+    EXPECT_TRUE(poses_in(file, {"o/a", {"o/a/all.ptx"}}).refusal.empty()) << "the file may hold views of any name";
     const std::filesystem::path unnamed =
         folder_.write("p.json", R"({"scanmill": 1, "poses": [{"rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]})");
-    EXPECT_EQ(poses_in(unnamed, {"o/a", {"o/a/v1.ply"}}).refusal, "") << "poses in the order of the views";
-    EXPECT_THAT(poses_in(folder_ / "absent.conf", {"o/a", {"o/a/v1.ply"}}).refusal, HasSubstr("'a' has no poses"));
+    EXPECT_TRUE(poses_in(unnamed, {"o/a", {"o/a/v1.ply"}}).refusal.empty()) << "poses in the order of the views";
+    EXPECT_THAT(poses_in(folder_ / "absent.conf", {"o/a", {"o/a/v1.ply"}}).refusal.sentence,
+                HasSubstr("'a' has no poses"));
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ FilterDeclaration reader() {
                 for (const Length& threshold : params.thresholds) sum += threshold.value();
             if (params.reads == "nothing") throw Error("nothing to read").hint("read something");
             context.metric("sum", sum, Unit::length);
+            if (params.reads == "doubt") context.doubt("far too small");
             return Outputs().set("points", inputs.get<PointCloud>("points"));
         });
 }
@@ -81,6 +82,15 @@ protected:
     PlannedStep step_;
     NodeReport report_;
 };
+
+TEST_F(ReaderStep, ADoubtOfAFilterThatDeclaresNone_IsAFault) {
+    set("reads", std::string("doubt"));
+    EXPECT_THAT(refusal(one_place_).what(),
+                HasSubstr("the filter reader doubts its result (far too small), but declares no doubts"));
+    step_.spec.doubts = {"the result is too small"};
+    sum_over(one_place_);
+    EXPECT_EQ(report_.doubts.front().text, "far too small");
+}
 
 TEST_F(ReaderStep, Lengths_AreResolved) {
     set("reads", std::string("size tolerance thresholds"));

@@ -44,6 +44,7 @@ SCANMILL_FILTER() {
         .param("log", &P::log, "A file that every run appends a line to: mode, number of points.")
         .param("length", &P::length, "Legs of the tetrahedron.", above(0))
         .param("factor", &P::factor, "What positions are multiplied by.")
+        .doubts({"it is asked to doubt"})
         .metric("points", Unit::count, "Points that came out.", headline)
         .metric("more", Unit::count, "Points that came in at the port `more`.")
         .metric("length", Unit::length, "The parameter `length` in the scan's unit.")

@@ -29,6 +29,11 @@ double rough_share(const TriangleMesh& mesh);
 ///   as large as the spacing, have 0.18 to 0.3.
 /// - `noise` turns a triangle with edges of the median length by more than 5 degrees. `noise` is the standard deviation
 ///   of the vertices, see vertex_noise(). Scans of the usual collections have 0 to 4 degrees.
+///
+/// Its callers declare signs_of_doubtful_surface.
 std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise = 0);
+inline constexpr const char* signs_of_doubtful_surface =
+    "the surface spans gaps (more than 10 % of its area has an edge longer than seven median edges, or it has a handle "
+    "beside a gap) or is rough (at more than 15 % of more than 10,000 edges it turns by more than 60 degrees)";
 
 }  // namespace scanmill

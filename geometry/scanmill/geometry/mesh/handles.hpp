@@ -45,5 +45,7 @@ std::vector<HandleLoop> handle_loops(const TriangleMesh& mesh, double longest, s
 /// triangles has a value other than 0 in the face column `filled`.
 std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh, Execution& execution,
                                               const std::function<bool(u32 vertex)>& is_invented = {});
+inline constexpr const char* sign_of_doubtful_handles =
+    "the closed surface has small handles that the object hardly has (shorter than 12 spacings around)";
 
 }  // namespace scanmill
