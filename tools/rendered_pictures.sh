@@ -176,3 +176,64 @@ mkdir -p "$root/docs/how-to/register-views"
 draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/views.png
 draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/placed.png
 draw after/raw-scans.ply mesh 'size: [400, 300]' docs/how-to/register-views/mesh.png placed/register-views.ply
+
+mkdir -p "$root/docs/into-one-frame"
+draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/views.png
+draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/placed.png
+draw after/raw-scans.ply mesh 'size: [400, 300]' docs/into-one-frame/mesh.png placed/register-views.ply
+
+# The tutorial: each page has a folder, and its own files and commands make what the pictures show.
+tutorial=docs/tutorial/pictures
+mkdir -p "$root/$tutorial"
+page() {
+    mkdir "$folder/$1"
+    cd "$folder/$1"
+}
+
+page one-scan
+files_of docs/tutorial/1-one-scan.md
+run scan.yaml -o scans
+run raw-scans scans/part.ply -o out
+run quickstart scans/part.ply -o quick
+sed -i 's/outer: fil}/outer: fill}/' solid.yaml
+run solid.yaml scans/part.ply -o coarse --set 'bin-size=4 u' || true
+draw scans/part.ply points 'size: [320, 240]' $tutorial/part-scan.png out/raw-scans.ply
+draw out/raw-scans.ply mesh 'size: [320, 240]' $tutorial/part-mesh.png
+draw quick/part.stl mesh 'size: [320, 240]' $tutorial/part-doubtful.png out/raw-scans.ply
+draw coarse/failed/part.ply mesh 'size: [400, 300], eye: [-72 u, -88 u, 82 u], look-at: [0 u, 0 u, -5 u]' $tutorial/part-coarse.png
+
+page raw-views
+files_of docs/tutorial/2-raw-views.md
+awk -f duck.awk duck.txt >duck.off
+mkdir positions
+while read -r name pose; do echo "{\"scanmill\": 1, \"poses\": [{$pose}]}" >"positions/$name.json"; done <positions.txt
+run view.yaml positions/*.json --in duck=duck.off -o views
+run "$folder/merged.yaml" views/*.ply -o before
+run register-views views/*.ply -o out
+run raw-scans views/*.ply --set poses=out/register-views-poses.json -o out
+run raw-scans views/above.ply views/side-*.ply --set poses=out/register-views-poses.json -o half
+view='size: [320, 240], eye: [110 u, -100 u, 80 u]'
+draw before/merged.ply points 'colour: source, legend: false, size: [320, 240]' $tutorial/duck-views.png
+draw out/register-views.ply points "colour: source, legend: false, $view" $tutorial/duck-placed.png
+draw out/raw-scans.ply mesh "$view" $tutorial/duck-mesh.png
+draw half/raw-scans.ply mesh 'colour: filled, legend: false, camera: [bottom], size: [320, 240]' $tutorial/duck-filled.png
+
+page compare-variants
+files_of docs/tutorial/3-compare-variants.md
+run scan.yaml bracket.off -o .
+run settings.yaml part.ply --in truth=bracket.off -o settings
+run surfaces.yaml part.ply --in truth=bracket.off --set neighbours=192 -o surfaces
+for neighbours in 12 48 192; do mv "settings/neighbours=$neighbours.png" "$root/$tutorial/neighbours-$neighbours.png"; done
+mv surfaces/grow.png "$root/$tutorial/surface-grow.png"
+mv surfaces/poisson.png "$root/$tutorial/surface-poisson.png"
+
+page nightly-batch
+mkdir models scans
+files_of docs/tutorial/4-nightly-batch.md
+awk 'NR > 2 && NF == 3 { $2 *= 1.5 } { print }' models/bracket-1.off >models/bracket-3.off
+awk 'NR > 2 && NF == 3 { $3 *= 1.2 } { print }' models/bracket-1.off >models/bracket-4.off
+run scan.yaml models/bracket-3.off -o scans
+run scan.yaml models/bracket-4.off -o scans --set 'views=[0.4, 0.3, 1, -0.5, 0.2, 1]'
+run mesh.yaml scans/*.ply --unit mm -o nights
+mv nights/bracket-3.png "$root/$tutorial/night-good.png"
+mv nights/bracket-4.png "$root/$tutorial/night-doubtful.png"
