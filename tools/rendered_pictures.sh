@@ -57,6 +57,12 @@ run bowl.yaml sphere.ply -o .
 draw sphere-open.ply mesh 'boundaries: true, size: [360, 270]' $pictures/bowl-open.png sphere.ply
 draw sphere-solid.ply mesh 'size: [360, 270]' $pictures/bowl-closed.png sphere.ply
 
+files_of docs/how-to/average-noise-with-poisson.md
+run torus.yaml -o .
+run surfaces.yaml torus.ply -o .
+draw torus-through.ply mesh 'size: [300, 225]' $pictures/noisy-through.png
+draw torus-poisson.ply mesh 'size: [300, 225]' $pictures/noisy-poisson.png torus-through.ply
+
 files_of docs/how-to/make-a-lighter-mesh.md
 run light.yaml sphere.ply -o .
 near='edges: true, eye: [0 u, -120 u, 120 u], look-at: [0 u, -70 u, 70 u], size: [240, 180]'
