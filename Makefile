@@ -110,7 +110,7 @@ fuzz: ## fuzz every reader, FUZZ_SECONDS=60 for each, until the first finding
 	cmake --build --preset fuzz -j $(jobs)
 	tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
 
-generate: dev ## write schemas/ and docs/filters/ from the filters' declarations
+generate: dev ## write schemas/ and the generated parts of pages, from the filters' declarations
 	tools/generate.sh build/dev
 
 format: ## format the C++ code

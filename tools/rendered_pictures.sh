@@ -33,24 +33,75 @@ draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filt
 draw "$data/meshes/mannequin-devil.off" mesh 'size: [400, 300], style: lines' filters/render/lines.png
 draw "$data/meshes/elephant-with-holes.off" mesh 'size: [400, 300], edges: true, boundaries: true' filters/render/edges.png
 
-# The pages on inspection and on changed parts: their own files and commands.
+# The how-to pages: their own files and commands.
 files_of() { awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/$1"; }
-files_of docs/inspection.md
+pictures=docs/how-to/pictures
+files_of docs/how-to/remove-outliers.md
+run dirty.yaml -o .
+run marked.yaml dirty.ply -o .
+draw dirty-marked.ply points 'colour: outlier, scale: [-1 u, 1 u], legend: false, size: [360, 270]' $pictures/outliers.png
+
+files_of docs/how-to/close-a-noisy-scan.md
+files_of docs/how-to/close-a-scan-with-a-part-missing.md
+run sphere.yaml -o .
+run closed.yaml sphere.ply -o .
+draw sphere-closed.ply mesh 'colour: filled, scale: [-1 u, 1 u], legend: false, size: [360, 270]' $pictures/closed.png
+run bowl.yaml sphere.ply -o .
+draw sphere-open.ply mesh 'boundaries: true, size: [360, 270]' $pictures/bowl-open.png sphere.ply
+draw sphere-solid.ply mesh 'size: [360, 270]' $pictures/bowl-closed.png sphere.ply
+
+files_of docs/how-to/make-a-lighter-mesh.md
+run light.yaml sphere.ply -o .
+near='edges: true, eye: [0 u, -120 u, 120 u], look-at: [0 u, -70 u, 70 u], size: [240, 180]'
+draw sphere-full.ply mesh "$near" $pictures/full.png
+draw sphere-light.ply mesh "$near" $pictures/light.png
+
+files_of docs/how-to/mesh-raw-views.md
+run views.yaml -o .
+run raw-scans views.ply -o .
+draw views.ply points 'size: [360, 240]' $pictures/raw-views.png raw-scans.ply
+draw raw-scans.ply mesh 'size: [360, 240]' $pictures/raw-mesh.png
+
+files_of docs/how-to/open-mesh-and-edges.md
+files_of docs/how-to/plan-a-probe-path.md
+run block.yaml -o .
+run part.yaml block.ply -o .
+run plate.yaml -o .
+run probe.yaml block.ply --in plate=plate.ply --in corners=corners.csv -o .
+cat >edges.yaml <<'YAML'
+scanmill: 1
+name: edges
+inputs: {scene: {kind: mesh, frame: scanner}, lines: {kind: features, frame: scanner}, plan: probes, to-machine: transform}
+steps:
+  - id: edges
+    render: {size: [360, 270]}
+    in: {scene: scene, over: lines}
+  - apply-transform:
+    in: {value: scene, transform: to-machine}
+  - id: plan-on-mesh
+    render: {size: [400, 300]}
+    in: {scene: apply-transform, over: plan}
+outputs: {edges.png: edges, probe-plan.png: plan-on-mesh}
+YAML
+run edges.yaml block-mesh.ply --in lines=block-lines.json --in plan=block-probes.json --in to-machine=block-to-machine.json -o edges
+cp edges/edges.png edges/probe-plan.png "$root/$pictures/"
+
+files_of docs/how-to/inspect-a-part.md
 run scan.yaml -o .
 run inspect part.ply --unit mm --in nominal=block.off --set 'tolerance=[-0.1 mm, 0.1 mm]' -o out || true
-mkdir -p "$root/docs/inspection"
-cp out/failed/part-deviation.png out/failed/part-on-nominal.png "$root/docs/inspection/"
+mkdir -p "$root/docs/how-to/inspect-a-part"
+cp out/failed/part-deviation.png out/failed/part-on-nominal.png "$root/docs/how-to/inspect-a-part/"
 
-files_of docs/part-changed.md
+files_of docs/how-to/update-a-changed-part.md
 run rescan.yaml part.off --unit mm -o clouds
 clouds=clouds=clouds/block-pad.ply,clouds/block-pocket.ply
 run update-mesh block.off --unit mm --in "$clouds" --set 'max-distance=1.5 mm' --set 'scale=[-6 mm, 6 mm]' -o changed
 run pictures.yaml block.off --unit mm --in "$clouds" -o changed
-mkdir -p "$root/docs/part-changed"
-cp changed/model.png changed/scans.png changed/updated.png "$root/docs/part-changed/"
-cp changed/block-change.png "$root/docs/part-changed/change.png"
+mkdir -p "$root/docs/how-to/update-a-changed-part"
+cp changed/model.png changed/scans.png changed/updated.png "$root/docs/how-to/update-a-changed-part/"
+cp changed/block-change.png "$root/docs/how-to/update-a-changed-part/change.png"
 
-files_of docs/touched-edges.md
+files_of docs/how-to/touch-the-edges.md
 run scan.yaml bracket.off -o .
 run plate.yaml -o .
 run wang-2006-hybrid part.ply --unit mm --in plate=plate.ply --in corners=corners.csv \
@@ -77,8 +128,8 @@ steps:
 outputs: {plan.png: planned, alone.png: alone, both.png: both}
 YAML
 run look.yaml touched/part-machine.ply --in after=touched/part-scan-hybrid.ply --in plan=touched/part-probes.json -o look
-mkdir -p "$root/docs/touched-edges"
-cp look/plan.png look/alone.png look/both.png "$root/docs/touched-edges/"
+mkdir -p "$root/docs/how-to/touch-the-edges"
+cp look/plan.png look/alone.png look/both.png "$root/docs/how-to/touch-the-edges/"
 
 # The page on views without poses: eight views of a model, each turned and shifted in a way of its own, then registered.
 cat >view.yaml <<'YAML'
@@ -115,6 +166,11 @@ printf 'scanmill: 1\nname: merged\ninputs:\n  views: {kind: points, list: true, 
 run merged.yaml views/*.ply -o before
 run register-views views/*.ply -o placed
 run raw-scans views/*.ply -o after
+mkdir -p "$root/docs/how-to/register-views"
+draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/views.png
+draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/placed.png
+draw after/raw-scans.ply mesh 'size: [400, 300]' docs/how-to/register-views/mesh.png placed/register-views.ply
+
 mkdir -p "$root/docs/into-one-frame"
 draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/views.png
 draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/placed.png

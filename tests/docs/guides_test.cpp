@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guides, followed word by word.
+// The pages of docs/ that have commands, followed word by word.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <sstream>
 
 #include "support/folders.hpp"
 #include "support/guide.hpp"
@@ -26,32 +29,45 @@ TEST(Guide, Matching_TakesGapsInLinesAndBetweenThem) {
     EXPECT_FALSE(matches({}, {"a"}));
 }
 
-TEST(Guide, UserGuide_PrintsWhatItShows) {
-    const TemporaryFolder folder;
-    const Guide guide = read_guide(source / "docs/user-guide.md");
-    ASSERT_GE(guide.commands.size(), 10u);
-    follow(guide, folder.path(), folder / "home");
+/// The pages whose commands each run in an empty folder of their own.
+std::vector<std::string> pages_with_commands() {
+    std::vector<std::string> pages;
+    for (const std::string folder : {"docs/how-to", "docs/reference", "docs/tutorial"}) {
+        if (!fs::is_directory(source / folder)) continue;
+        for (const auto& entry : fs::directory_iterator(source / folder))
+            if (entry.path().extension() == ".md" && !read_guide(entry.path()).commands.empty())
+                pages.push_back(folder + "/" + entry.path().filename().string());
+    }
+    std::ranges::sort(pages);
+    return pages;
 }
 
-TEST(Guide, Inspection_PrintsWhatItShows) {
-    const TemporaryFolder folder;
-    const Guide guide = read_guide(source / "docs/inspection.md");
-    ASSERT_GE(guide.commands.size(), 5u);
-    follow(guide, folder.path(), folder / "home");
+/// `docs/how-to/make-a-print.md` as `how_to_make_a_print`.
+std::string page_test_name(const testing::TestParamInfo<std::string>& info) {
+    std::string name = fs::path(info.param).replace_extension().string().substr(std::string("docs/").size());
+    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    return name;
 }
 
-TEST(Guide, PartChanged_PrintsWhatItShows) {
+class GuidePage : public testing::TestWithParam<std::string> {};
+
+TEST_P(GuidePage, PrintsWhatItShows) {
     const TemporaryFolder folder;
-    const Guide guide = read_guide(source / "docs/part-changed.md");
-    ASSERT_GE(guide.commands.size(), 10u);
-    follow(guide, folder.path(), folder / "home");
+    follow(read_guide(source / GetParam()), folder.path(), folder / "home");
 }
 
-TEST(Guide, TouchedEdges_PrintsWhatItShows) {
-    const TemporaryFolder folder;
-    const Guide guide = read_guide(source / "docs/touched-edges.md");
-    ASSERT_GE(guide.commands.size(), 6u);
-    follow(guide, folder.path(), folder / "home");
+INSTANTIATE_TEST_SUITE_P(Docs, GuidePage, testing::ValuesIn(pages_with_commands()), page_test_name);
+
+TEST(Guide, ConsoleBlocks_AreAllRun) {
+    for (const auto& entry : fs::recursive_directory_iterator(source / "docs")) {
+        if (entry.path().extension() != ".md") continue;
+        std::istringstream lines(content_of(entry.path()));
+        std::string before;
+        for (std::string line; std::getline(lines, line); before = line)
+            if (line == "```console") {
+                EXPECT_EQ(before, "<!-- run -->") << entry.path();
+            }
+    }
 }
 
 TEST(Guide, PluginGuide_MakesAFilterThatWorks) {

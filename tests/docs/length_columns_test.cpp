@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide names every column that `convert --to-unit` scales, and no other.
+// The page on converting names every column that `convert --to-unit` scales, and no other.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Names matches_in(const std::string& text, const std::string& pattern) {
     return all;
 }
 
-TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
+TEST(LengthColumns, ThePageOnConvertNamesThem) {
     const std::filesystem::path root = test::source_folder();
     Names scaled;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "filters"))
@@ -33,11 +33,11 @@ TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
             scaled.merge(matches_in(content_of(entry.path()),
                                     "Column\\(\"([a-z0-9-]+)\"[^\n]*with_length_exponent\\((?:1|-1)\\)"));
     ASSERT_TRUE(scaled.contains("bin-size") && scaled.contains("curvature-1"));
-    const std::string guide = content_of(root / "docs/user-guide.md");
-    const std::size_t begin = guide.find("`--to-unit mm` multiplies");
+    const std::string page = content_of(root / "docs/how-to/convert-files.md");
+    const std::size_t begin = page.find("`--to-unit mm` multiplies");
     ASSERT_NE(begin, std::string::npos);
-    const std::string told = guide.substr(begin + 15, guide.find("\n\n", begin) - begin - 15);
-    EXPECT_EQ(matches_in(told, "`([a-z0-9-]+)`"), scaled);
+    const std::string named = page.substr(begin + 15, page.find("\n\n", begin) - begin - 15);
+    EXPECT_EQ(matches_in(named, "`([a-z0-9-]+)`"), scaled);
 }
 
 }  // namespace

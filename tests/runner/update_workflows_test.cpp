@@ -118,9 +118,9 @@ TEST_F(UpdateWorkflows, CloudBesideTheMesh_FailsOrKeepsTheMesh) {
     EXPECT_TRUE(std::ranges::equal(mesh->positions, block().positions));
 }
 
-/// The script of docs/part-changed.md, with a tenth of the points.
+/// The script of docs/how-to/update-many-parts.md, with a tenth of the points.
 TEST_F(UpdateWorkflows, WorkedCases_ReplaceWhatTheirCloudsShow) {
-    const std::string script = source_folder() + "/docs/part-changed/worked_cases.py";
+    const std::string script = source_folder() + "/docs/how-to/update-a-changed-part/worked_cases.py";
     const fs::path cases = folder_ / "cases";
     ASSERT_EQ(std::system(("python3 '" + script + "' '" + cases.string() + "' --share 0.1").c_str()), 0);
     const ProgramResult scanned = scanmill_program({"batch", "scan.yaml", "-o", "scans", "-q"}, {.folder = cases});
