@@ -22,11 +22,18 @@ draw() {
     mv drawn/picture.png "$root/$4"
 }
 
-# The first page: a scan and what becomes of it.
-run raw-scans "$data/points_3/kitten.xyz" -o kitten
-kitten=kitten/raw-scans.ply
-draw "$data/points_3/kitten.xyz" points 'up: y, size: [400, 400]' docs/pictures/kitten-scan.png
-draw $kitten mesh 'up: y, size: [400, 400]' docs/pictures/kitten-mesh.png "$data/points_3/kitten.xyz"
+# The first page: a scan and what becomes of it, and a scan of one side.
+scan_of() { printf 'scanmill: 1\nname: scan\ninputs: {model: mesh}\nsteps: [{virtual-scan: {%s}}]\noutputs: {"{scan}-scan.ply": virtual-scan}\n' "$1"; }
+scan_of 'views: 20, resolution: 0.5 %diag, noise: 0.15 %diag, outliers: 1 %' >noisy.yaml
+run noisy.yaml "$data/meshes/ChineseDragon-10kv.off" -o lion
+run raw-scans lion/ChineseDragon-10kv-scan.ply -o lion
+lion=lion/raw-scans.ply
+draw lion/ChineseDragon-10kv-scan.ply points 'up: y, size: [400, 310]' docs/pictures/lion-scan.png $lion
+draw $lion mesh 'up: y, size: [400, 310]' docs/pictures/lion-mesh.png
+scan_of 'views: [0, 0, 1], resolution: 0.5 %diag, noise: 0.05 %diag' >above.yaml
+run above.yaml "$data/meshes/bear.off" -o side
+run terrain side/bear-scan.ply -o terrain
+draw terrain/bear-scan.ply mesh 'up: y, boundaries: true, size: [320, 240]' docs/pictures/one-side.png
 
 # The page of render.
 draw "$data/meshes/anchor_dense.off" mesh 'size: [400, 300], creases: true' filters/render/picture.png
@@ -176,11 +183,6 @@ mkdir -p "$root/docs/how-to/register-views"
 draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/views.png
 draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/how-to/register-views/placed.png
 draw after/raw-scans.ply mesh 'size: [400, 300]' docs/how-to/register-views/mesh.png placed/register-views.ply
-
-mkdir -p "$root/docs/into-one-frame"
-draw before/merged.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/views.png
-draw placed/register-views.ply points 'colour: source, legend: false, size: [400, 300]' docs/into-one-frame/placed.png
-draw after/raw-scans.ply mesh 'size: [400, 300]' docs/into-one-frame/mesh.png placed/register-views.ply
 
 # The tutorial: each page has a folder, and its own files and commands make what the pictures show.
 tutorial=docs/tutorial/pictures

@@ -11,6 +11,8 @@
 
 #include "support/folders.hpp"
 #include "support/guide.hpp"
+#include "support/program.hpp"
+#include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -57,6 +59,19 @@ TEST_P(GuidePage, PrintsWhatItShows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Docs, GuidePage, testing::ValuesIn(pages_with_commands()), page_test_name);
+
+/// The commands of the first page, after what `make demo` does before them.
+TEST(Guide, TheFirstPage_PrintsWhatItShows) {
+    SCANMILL_REAL_SCAN(model, fetched_data, "meshes/hand.off");
+    const TemporaryFolder folder;
+    const ProgramResult scanned =
+        scanmill_program({"run", "virtual-scans", model.string(), "--set", "noise=0.05 %diag", "-o",
+                          (folder / "build/virtual-views").string(), "-q"});
+    ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+    const Guide guide = read_guide(source / "README.md");
+    ASSERT_EQ(guide.commands.size(), 3u);
+    follow(guide, folder.path(), folder / "home");
+}
 
 TEST(Guide, ConsoleBlocks_AreAllRun) {
     for (const auto& entry : fs::recursive_directory_iterator(source / "docs")) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -65,11 +66,11 @@ std::string without_code_spans(const std::string& prose) {
 
 /// The targets of its links and pictures.
 std::vector<std::string> link_targets(const std::string& markdown) {
-    const std::regex link(R"(\]\(([^)\s]+)\))");
+    const std::regex link(R"re(\]\(([^)\s]+)\)|<img src="([^"]+)")re");
     const std::string prose = without_code_spans(prose_of(markdown));
     std::vector<std::string> targets;
     for (std::sregex_iterator match(prose.begin(), prose.end(), link), end; match != end; ++match)
-        targets.push_back((*match)[1]);
+        targets.push_back((*match)[1].matched ? (*match)[1] : (*match)[2]);
     return targets;
 }
 
@@ -100,8 +101,8 @@ TEST(Links, Anchors_AreThoseOfTheHeadings) {
 }
 
 TEST(Links, Targets_AreThoseOutsideCode) {
-    EXPECT_THAT(link_targets("[a](b.md) ![c\nd](e.png#f) `[g](h)`\n```\n[i](j)\n```\n"),
-                testing::ElementsAre("b.md", "e.png#f"));
+    EXPECT_THAT(link_targets("[a](b.md) ![c\nd](e.png#f) `[g](h)`\n```\n[i](j)\n```\n<img src=\"k.png\" width=\"9\">"),
+                testing::ElementsAre("b.md", "e.png#f", "k.png"));
 }
 
 TEST(Links, RelativeLinks_LeadToFilesAndHeadings) {
@@ -118,11 +119,24 @@ TEST(Links, RelativeLinks_LeadToFilesAndHeadings) {
     }
 }
 
-TEST(Links, PagesOfDocs_HaveAtMost300Lines) {
-    for (const fs::path& page : pages_of_docs()) {
+TEST(Links, PagesHaveAtMost300Lines) {
+    for (const fs::path& page : linked_pages()) {
         const std::string content = content_of(page);
         EXPECT_LE(std::ranges::count(content, '\n'), 300) << fs::relative(page, tree);
     }
+}
+
+TEST(Links, TheFirstPageHasAtMost900Words) {
+    std::istringstream words(content_of(tree / "README.md"));
+    EXPECT_LE(std::distance(std::istream_iterator<std::string>(words), {}), 900);
+}
+
+TEST(Links, EveryReadyWorkflow_IsOnItsPage) {
+    const std::vector<std::string> targets = link_targets(content_of(tree / "docs/reference/ready-workflows.md"));
+    for (const auto& entry : fs::directory_iterator(tree / "workflows"))
+        if (entry.path().extension() == ".yaml") {
+            EXPECT_THAT(targets, testing::Contains("../../workflows/" + entry.path().filename().string()));
+        }
 }
 
 }  // namespace
