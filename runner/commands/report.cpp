@@ -89,8 +89,8 @@ int acknowledge(const Options& options) {
     for (const CellComparison* cell : chosen) {
         records.acknowledge({comparison.batch, cell->workflow, cell->scan, cell->variant, "", options.who, options.why,
                              cell->doubts});
-        fmt::print("{} of {} known now\n", count_text(cell->doubts.size(), "doubt", "doubts"),
-                   printable_line(cell_name(*cell)) + by_count(cell->doubts.size(), " is", " are"));
+        fmt::print("{} of {} {} known now\n", count_text(cell->doubts.size(), "doubt", "doubts"),
+                   printable_line(cell_name(*cell)), by_count(cell->doubts.size(), "is", "are"));
     }
     return done;
 }
