@@ -369,18 +369,18 @@ int run_workflow(const RunOptions& options) {
 }
 
 /// The scan with the files that it declares for the plan's other inputs.
-ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
+ScanFile scan_file(const BatchScan& scan, const Plan& plan, const Refusal& refusal) {
     ScanFile file(scan.file);
     file.unit = scan.unit;
     file.frame = scan.frame;
     file.pose = scan.pose;
-    file.refusal = scan.refusal;
+    file.refusal = refusal;
     file.invalid = scan.invalid;
     for (const std::filesystem::path& path : scan.views) {
         ScanFile view(path);
         view.unit = scan.unit;
         view.frame = scan.frame;
-        view.refusal = scan.refusal;
+        view.refusal = refusal;
         view.invalid = scan.invalid;
         file.views.push_back(std::move(view));
     }
@@ -396,9 +396,10 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
     return file;
 }
 
-RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
+RunRequest request_for(const CheckedBatch& checked, const BatchPart& part, const ExecuteOptions& options) {
     RunRequest request;
-    for (const std::size_t index : part.scans) request.scans.push_back(scan_file(batch.scans[index], *part.plan));
+    for (const std::size_t index : part.scans)
+        request.scans.push_back(scan_file(checked.batch.scans[index], *part.plan, checked.refusal(part, index)));
     request.only = part.only;
     request.output_folder = options.session.output_folder;
     request.seed = options.seed;
@@ -431,7 +432,7 @@ int run_batch(const BatchOptions& options) {
     choose(checked, options.choice);
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
-        parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
+        parts.push_back({part.plan, request_for(checked, part, options.execute)});
     if (!parts.empty()) parts.front().request.protected_files = files_of(checked.batch);
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);

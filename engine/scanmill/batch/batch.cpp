@@ -289,10 +289,10 @@ public:
         if (is_sound && measuring_) report_unmeasured();
         if (is_sound && batch.gate && !checked_.parts.empty() && batch.measure.has_value() == (measuring_ != nullptr))
             check_gate(batch, checked_.parts, library_, batch_diagnostics_);
-        if (refused_ > most_refused)
-            batch_diagnostics_.warning({},
-                                       fmt::format("for {}, the poses are wrong, too",
-                                                   count_text(refused_ - most_refused, "more object", "more objects")));
+        if (refused_.size() > most_refused)
+            batch_diagnostics_.warning(
+                {}, fmt::format("for {}, the poses are wrong, too",
+                                count_text(refused_.size() - most_refused, "more object", "more objects")));
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
             batch_diagnostics_.error({}, "has {} cells (scans times variants); expected at most {}: split the batch",
@@ -434,6 +434,7 @@ private:
         Settings settings;
         std::string shape;  ///< BatchPart::shape
         std::vector<std::size_t> scans;
+        std::map<std::size_t, Refusal> refusals;  ///< BatchPart::refusals
     };
 
     void add_parts(const Workflow& workflow, std::size_t index, Diagnostics& diagnostics) {
@@ -453,10 +454,15 @@ private:
             const std::string manner =
                 fmt::format("{}{}{}", index, is_joined ? " joined" : "", is_measured ? " measured" : "");
             const std::string shape = key_of(settings) + manner;
-            if (takes_poses(workflow)) add_poses(checked_.batch.scans[scan], settings);
+            Refusal refusal;
+            for (const auto& [name, why] : batch.scans[scan].missing_settings)
+                if (settings.contains(name)) refusal = why;
+            if (takes_poses(workflow))
+                if (Refusal why = add_poses(scan, settings); !why.empty()) refusal = std::move(why);
             const auto [group, is_new] = group_of_key.emplace(key_of(settings) + manner, groups.size());
-            if (is_new) groups.push_back({std::move(settings), shape, {}});
+            if (is_new) groups.push_back({std::move(settings), shape, {}, {}});
             groups[group->second].scans.push_back(scan);
+            if (!refusal.empty()) groups[group->second].refusals.emplace(scan, std::move(refusal));
         }
         for (Group& group : groups) {
             const bool is_joined = joins(workflow, group.scans.front());
@@ -467,6 +473,7 @@ private:
                                       index,
                                       std::move(group.scans),
                                       {},
+                                      std::move(group.refusals),
                                       std::move(group.shape)});
         }
     }
@@ -485,20 +492,20 @@ private:
     }
 
     /// Adds the object's poses to the settings. Poses beside the views give way to a setting, which may be `none`.
-    void add_poses(BatchScan& scan, Settings& settings) {
+    /// Returns why they cannot be used.
+    Refusal add_poses(std::size_t index, Settings& settings) {
+        BatchScan& scan = checked_.batch.scans[index];
         const bool is_found = scan.poses_position.line == 0;
         if (is_found && settings.contains(poses_parameter)) {
             scan.poses_file.clear();
-            return;
+            return {};
         }
-        if (!scan.poses_refusal.empty() && scan.refusal.empty()) {
-            scan.refusal = scan.poses_refusal;
-            if (++refused_ <= most_refused)
-                batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.refusal.text());
-        }
-        if (scan.poses_file.empty()) return;
+        if (!scan.poses_refusal.empty() && refused_.insert(index).second && refused_.size() <= most_refused)
+            batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.poses_refusal.text());
+        if (scan.poses_file.empty()) return scan.poses_refusal;
         const fs::path file = path_from(fs::path(checked_.batch.file).parent_path(), scan.poses_file);
         settings.insert_or_assign(poses_parameter, text_setting(file.string(), scan.position));
+        return scan.poses_refusal;
     }
 
     /// Reports poses if no workflow takes them. Scans of one entry share a position, which is reported once.
@@ -765,7 +772,7 @@ private:
     std::set<std::string> first_inputs_, further_inputs_;  // names of inputs
     bool takes_scans_ = false, takes_points_ = false;
     static constexpr std::size_t most_refused = 10;
-    std::size_t refused_ = 0;  // objects whose poses are refused; warnings name the first
+    std::set<std::size_t> refused_;  // objects whose poses are refused; warnings name the first
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown
 };
 
@@ -809,6 +816,12 @@ std::size_t CheckedBatch::cells() const {
     for (const BatchPart& part : parts)
         count += part.plan->variants.size() * (has_run_per_scan(part) ? part.scans.size() : 1);
     return count;
+}
+
+const Refusal& CheckedBatch::refusal(const BatchPart& part, std::size_t scan) const {
+    const auto found = part.refusals.find(scan);
+    const Refusal& of_scan = batch.scans[scan].refusal;
+    return of_scan.empty() && found != part.refusals.end() ? found->second : of_scan;
 }
 
 bool CheckedBatch::has_run_per_scan(const BatchPart& part) const {

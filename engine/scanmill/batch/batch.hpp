@@ -59,7 +59,9 @@ struct BatchScan {
     std::string frame;  ///< as written; {stem} is that of each view. Empty: from the workflow or the file
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;  ///< empty: the pose is written in the batch
-    Refusal refusal;  ///< why the cells of the scan fail: it has no pose, or no file for a setting; empty: they run
+    Refusal refusal;  ///< why the cells of the scan fail in every workflow: its pose was refused; empty: they run
+    /// By parameter: why a setting has no file. Fails the cells of workflows with this parameter.
+    std::map<std::string, Refusal> missing_settings;
     /// The poses of an object's views: those that the batch names, else those beside the views. check_batch() uses the
     /// latter only where a workflow takes poses and no setting gives them.
     std::filesystem::path poses_file;
@@ -128,6 +130,8 @@ struct BatchPart {
     std::size_t workflow = 0;  ///< index into Batch::workflows
     std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; empty for a workflow without inputs
     std::vector<std::string> only{};  ///< names of the variants to run; empty: all
+    /// By index into Batch::scans: why the cells of a scan fail in this workflow only, as poses that it cannot take.
+    std::map<std::size_t, Refusal> refusals{};
     std::string shape{};  ///< equal for parts whose plans differ at most in the poses of their objects
 };
 
@@ -149,6 +153,8 @@ struct CheckedBatch {
     /// The number of cells: for every part, its variants times its runs. A run takes one scan, one object, a list of
     /// scans, or no scan.
     std::size_t cells() const;
+    /// Why the cells of a scan fail in this part; empty: they run. `scan`: index into Batch::scans.
+    const Refusal& refusal(const BatchPart& part, std::size_t scan) const;
     /// Whether the part has one run for every scan or object.
     bool has_run_per_scan(const BatchPart& part) const;
 };

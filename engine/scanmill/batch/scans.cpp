@@ -605,10 +605,11 @@ private:
                                                          return value_of(scan, each);
                                                      });
                     } catch (const Error& error) {
-                        scan.refusal = {
+                        const Refusal refusal{
                             fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence()),
                             missing_file_hint};
-                        warn(scan.refusal.text());
+                        warn(refusal.text());
+                        scan.missing_settings.insert_or_assign(name, refusal);
                     }
                 }
         return settings;

@@ -65,8 +65,8 @@ TEST_F(ObjectsBatch, PlaceholdersAreTheObjectsNameAndItsFolder) {
     EXPECT_EQ(a.settings.at("n").values[0].literal.items[0], "o/a/n-3.txt") << "from the batch file";
     EXPECT_EQ(a.settings.at("m").values[0].literal.items[0], "x-a");
     EXPECT_EQ(a.settings.at("k").values[0].literal.items[0], "{other}");
-    EXPECT_TRUE(a.refusal.empty());
-    EXPECT_THAT(batch_.scans[1].refusal.sentence, HasSubstr("n-*.txt"));
+    EXPECT_THAT(a.missing_settings, IsEmpty());
+    EXPECT_THAT(batch_.scans[1].missing_settings.at("n").sentence, HasSubstr("n-*.txt"));
 }
 
 TEST_F(ObjectsBatch, WorkflowOfSingleScans_RefusesObjects) {
@@ -120,7 +120,8 @@ TEST_F(ObjectsBatch, PosesOfCompressedViewsAndOfOthers_AreToldApart) {
     const std::filesystem::path unnamed =
         folder_.write("p.json", R"({"scanmill": 1, "poses": [{"rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]})");
     EXPECT_TRUE(poses_in(unnamed, {"o/a", {"o/a/v1.ply"}}).refusal.empty()) << "poses in the order of the views";
-    EXPECT_THAT(poses_in(folder_ / "absent.conf", {"o/a", {"o/a/v1.ply"}}).refusal.sentence, HasSubstr("'a' has no poses"));
+    EXPECT_THAT(poses_in(folder_ / "absent.conf", {"o/a", {"o/a/v1.ply"}}).refusal.sentence,
+                HasSubstr("'a' has no poses"));
 }
 
 }  // namespace
