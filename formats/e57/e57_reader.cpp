@@ -118,7 +118,7 @@ public:
                 .hint("export it with its points");
         if (options_.view > contents.scans)
             throw Error("has no scan {}; it has {}", options_.view, count_text(contents.scans, "scan", "scans"))
-                .hint("scans are counted from #1");
+                .hint(fmt::format("name a scan from #1 to #{}, or the file without a number for all", contents.scans));
         const ::e57::ImageFile file = translated([&] { return opened(bytes_); });
         describe(file, contents);
         require_room();

@@ -57,7 +57,7 @@ TEST_F(ViewsCommand, SingleScan_IsTheWholeFile_OrTheViewThatIsNamed) {
     EXPECT_EQ(read_points(folder_ / "out/room-2.ply")->size(), 4u);
     const ProgramResult missing = run({"run", "one.yaml", "room.ptx#3", "-o", "out"});
     EXPECT_EQ(missing.exit_code, 1);
-    EXPECT_THAT(missing.err, HasSubstr("room.ptx#3': has no scan 3"));
+    EXPECT_THAT(missing.err, testing::AllOf(HasSubstr("room.ptx#3': has no scan 3"), HasSubstr("from #1 to #2")));
 }
 
 TEST_F(ViewsCommand, Views_AreCachedApart) {

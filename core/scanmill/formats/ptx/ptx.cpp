@@ -21,7 +21,8 @@ public:
         }
         if (scans_ == 0) throw Error("holds no points: only blanks");
         if (options_.view > scans_)
-            throw Error("has no scan {}; it has {}", options_.view, count_text(scans_, "scan", "scans"));
+            throw Error("has no scan {}; it has {}", options_.view, count_text(scans_, "scan", "scans"))
+                .hint(fmt::format("name a scan from #1 to #{}, or the file without a number for all", scans_));
         if (positions_.empty())
             throw Error("holds no points: {} without a return", count_text(empty_, "cell", "cells"));
         require_countable(positions_.size(), "points");
