@@ -327,8 +327,7 @@ private:
             }
         };
         const auto set = [&](const YamlEntry& found) {
-            const Settings settings = parse_settings(found.value, diagnostics_);
-            for (BatchScan& scan : scans()) scan.settings = settings_of(scan, settings);
+            add_settings(parse_settings(found.value, diagnostics_), scans());
         };
         read_mapping(node, "a scan",
                      {{"by", by},
@@ -590,29 +589,52 @@ private:
         }
     }
 
-    /// The settings of a scan. Texts that contain {stem} or {folder} are replaced; such a text with wildcards is the
-    /// only file that matches.
-    Settings settings_of(BatchScan& scan, Settings settings) {
-        for (auto& [name, value] : settings)
-            for (WrittenValue& written : value.values)
-                for (std::string& item : written.literal.items) {
-                    if (item.find("{stem}") == std::string::npos && item.find("{folder}") == std::string::npos)
-                        continue;
-                    const auto warn = [&](std::string text) { diagnostics_.warning(value.position, std::move(text)); };
-                    try {
-                        item = has_wildcards(item) ? path_from(folder_, only_file_for(scan, item, warn)).string()
-                                                   : with_placeholders(item, [&](const std::string& each) {
-                                                         return value_of(scan, each);
-                                                     });
-                    } catch (const Error& error) {
-                        const Refusal refusal{
-                            fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name, error.sentence()),
-                            missing_file_hint};
-                        warn(refusal.text());
-                        scan.missing_settings.insert_or_assign(name, refusal);
+    static bool is_template(const std::string& text) {
+        return text.find("{stem}") != std::string::npos || text.find("{folder}") != std::string::npos;
+    }
+
+    /// Whether the texts that contain {stem} or {folder} have no other placeholders. If not, reports these.
+    bool check_templates(const Settings& settings) {
+        const std::size_t before = diagnostics_.errors();
+        for (const auto& [name, value] : settings)
+            for (const WrittenValue& written : value.values)
+                for (const std::string& item : written.literal.items)
+                    if (is_template(item))
+                        check_path_template(item, fmt::format("the setting '{}'", name), written.position,
+                                            diagnostics_);
+        return diagnostics_.errors() == before;
+    }
+
+    /// Adds the settings to every scan. Texts that contain {stem} or {folder} are replaced; such a text with wildcards
+    /// is the only file that matches.
+    void add_settings(const Settings& settings, std::span<BatchScan> scans) {
+        for (BatchScan& scan : scans) scan.settings = settings;
+        if (!check_templates(settings)) return;
+        for (const auto& [name, value] : settings) {
+            std::set<std::string> warnings;  // about folders that the patterns of several scans visit, once
+            const auto visit = [&](std::string sentence) { warnings.insert(std::move(sentence)); };
+            Complaints complaints;
+            for (BatchScan& scan : scans)
+                for (WrittenValue& written : scan.settings.at(name).values)
+                    for (std::string& item : written.literal.items) {
+                        if (!is_template(item)) continue;
+                        try {
+                            item = has_wildcards(item)
+                                       ? path_from(folder_, only_file_for(scan, item, visit)).string()
+                                       : with_placeholders(
+                                             item, [&](const std::string& each) { return value_of(scan, each); });
+                        } catch (const Error& error) {
+                            Refusal refusal{fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name,
+                                                        error.sentence()),
+                                            missing_file_hint};
+                            complaints.add(refusal.text());
+                            scan.missing_settings.insert_or_assign(name, std::move(refusal));
+                        }
                     }
-                }
-        return settings;
+            const auto warn = [&](std::string text) { diagnostics_.warning(value.position, std::move(text)); };
+            for (const std::string& warning : warnings) warn(warning);
+            complaints.report(fmt::format("the file for `{}`", name), warn);
+        }
     }
 
     void pose(const YamlEntry& entry, std::span<BatchScan> scans) {

@@ -257,6 +257,21 @@ TEST_F(BatchScans, ManyMissingFiles_AreTenAndANumber) {
     EXPECT_THAT(found.back(), HasSubstr("3 more scans"));
 }
 
+TEST_F(BatchScans, ManyMissingFilesOfASetting_AreTenAndANumber) {
+    for (int i = 0; i < 13; ++i) folder_.write("many/" + std::to_string(i) + ".ply", "x");
+    const auto found = scans("[{path: many/*.ply, set: {n: '{stem}-*.txt'}}]");
+    ASSERT_THAT(found, SizeIs(11));
+    EXPECT_THAT(found.back(), AllOf(HasSubstr("3 more scans"), HasSubstr("`n`")));
+    EXPECT_THAT(batch_.scans[12].missing_settings, SizeIs(1));
+}
+
+TEST_F(BatchScans, UnknownPlaceholderBesideAKnownOne_IsAnErrorOfTheSetting) {
+    EXPECT_THAT(scans("[{path: scans/*.ply, set: {n: 'x-{stem}-{folde}.txt'}}]"),
+                ElementsAre(AllOf(StartsWith("b:3:"), testing::Not(HasSubstr("warning")), HasSubstr("the setting 'n'"),
+                                  HasSubstr("the unknown placeholder {folde}; it takes {stem} and {folder}"))));
+    EXPECT_THAT(scans("[{path: scans/*.ply, set: {n: '{folde}.txt'}}]"), IsEmpty()) << "a text, not a template";
+}
+
 TEST_F(BatchScans, PoseOfAFile_IsTheScansOwnOrTheOnlyOne) {
     folder_.write("poses/a.json", json(pose(1)));
     folder_.write("poses/b.json", json(pose(7, "x.ply") + "," + pose(2, "b")));
