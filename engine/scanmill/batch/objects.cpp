@@ -25,12 +25,14 @@ bool has_format(const fs::path& file, const Fits& fits) {
 }
 
 /// Whether files with this extension may hold points or a mesh. Formats that only read have no writers.
-bool may_be_view(const fs::path& file) {
-    return has_format(file, [](const Format& format) {
+bool may_be_view(const fs::path& name) {
+    return has_format(file_view(name).file, [](const Format& format) {
         return !format.is_refused && (format.writers.empty() || format.writer(kind_of<PointCloud>()) ||
                                       format.writer(kind_of<TriangleMesh>()));
     });
 }
+
+bool is_text(const fs::path& file) { return extension_of(file) == "txt"; }
 
 bool may_hold_several_views(const fs::path& file) {
     return has_format(file, [](const Format& format) { return format.count_views != nullptr; });
@@ -117,6 +119,13 @@ bool has_results(const ObjectFolder& object) {
     return fs::exists(object.folder / records_file, ignored);
 }
 
+std::vector<fs::path> views_among(std::span<const fs::path> files) {
+    std::vector<fs::path> views;
+    std::ranges::copy_if(files, std::back_inserter(views), may_be_view);
+    if (!std::ranges::all_of(views, is_text)) std::erase_if(views, is_text);
+    return views;
+}
+
 ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
     ObjectFolder object{with_name(folder), {}};
     if (has_results(object))
@@ -124,15 +133,12 @@ ObjectFolder object_in(const fs::path& folder, const OnWarning& warn) {
                     records_file)
             .hint("name a folder with the views alone, and another one for the results: -o DIR");
     const Listed found = listed(object.folder);
-    std::ranges::copy_if(found.files, std::back_inserter(object.views), may_be_view);
-    const auto is_text = [](const fs::path& file) { return extension_of(file) == "txt"; };
-    if (!std::ranges::all_of(object.views, is_text))
-        std::erase_if(object.views, [&](const fs::path& file) {
-            if (is_text(file) && warn)
+    object.views = views_among(found.files);
+    if (!object.views.empty() && !is_text(object.views.front()))
+        for (const fs::path& file : found.files)
+            if (warn && is_text(file))
                 warn(fmt::format("'{}' is not taken as a view, because it is a text among files of other formats",
                                  file.string()));
-            return is_text(file);
-        });
     if (object.views.empty())
         throw Error("the folder '{}' has no views: {}", object.folder.string(),
                     found.files.empty() ? "it has no files"

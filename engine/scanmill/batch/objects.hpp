@@ -33,8 +33,12 @@ std::vector<ObjectFolder> objects_of(std::span<const std::filesystem::path> file
 /// Whether a run wrote its results into the folder. They do not count as views.
 bool has_results(const ObjectFolder& object);
 
-/// The object of a folder. All its files with the extension of a format of points or meshes are views; hidden files are
-/// not, and beside other views texts (.txt) are not, with a warning. Throws Error if there are none, if has_results(),
+/// The files that count as views: those with the extension of a format of points or meshes. Texts (.txt) do only if no
+/// other file does.
+std::vector<std::filesystem::path> views_among(std::span<const std::filesystem::path> files);
+
+/// The object of a folder, with views_among() its files that are not hidden. Warns about texts that do not count.
+/// Throws Error if there are none, if has_results(),
 /// or if the folder cannot be read.
 ObjectFolder object_in(const std::filesystem::path& folder, const OnWarning& warn = {});
 

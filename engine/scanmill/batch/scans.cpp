@@ -377,7 +377,10 @@ private:
         return scan;
     }
 
+    /// Adds the objects whose folders hold views. Other files that the path matches, as files of poses, are left out.
     void add_objects(const std::vector<ObjectFolder>& objects, Position position) {
+        std::vector<fs::path> others;
+        bool has_views = false;
         const auto normal = [](const fs::path& folder) {
             return (folder.empty() ? fs::path(".") : folder).lexically_normal();
         };
@@ -395,13 +398,30 @@ private:
                                                  object.folder.string(), records_file));
                 continue;
             }
+            const ObjectFolder views{object.folder, views_among(object.views)};
+            std::ranges::set_difference(object.views, views.views, std::back_inserter(others));
+            if (views.views.empty()) continue;
+            has_views = true;
             if (!is_new(object.folder, position, "; give all views of an object in one entry")) continue;
             BatchScan& scan = add_scan(object.folder, position);
-            scan.views = object.views;
-            const ObjectPoses beside = poses_beside(object);
+            scan.views = views.views;
+            const ObjectPoses beside = poses_beside(views);
             scan.poses_file = beside.file;
             scan.poses_refusal = beside.refusal;
         }
+        if (others.empty()) return;
+        const std::string more =
+            others.size() > 1 ? " and " + count_text(others.size() - 1, "more match", "more matches") : "";
+        if (has_views)
+            diagnostics_.warning(
+                position, fmt::format("'{}'{} {} not taken as {}; expected a path that matches only scans, as in "
+                                      "objects/*/*.ply",
+                                      others.front().string(), more, others.size() > 1 ? "are" : "is",
+                                      others.size() > 1 ? "views" : "a view"));
+        else
+            diagnostics_.error(position, "'{}'{} {} by {} extension; expected views, as in objects/*/*.ply",
+                               others.front().string(), more, others.size() > 1 ? "are not scans" : "is not a scan",
+                               others.size() > 1 ? "their" : "its");
     }
 
     /// Collects sentences about many scans. Only the first ten are reported.
@@ -619,10 +639,10 @@ private:
                     for (std::string& item : written.literal.items) {
                         if (!is_template(item)) continue;
                         try {
-                            item = has_wildcards(item)
-                                       ? path_from(folder_, only_file_for(scan, item, visit)).string()
-                                       : with_placeholders(
-                                             item, [&](const std::string& each) { return value_of(scan, each); });
+                            item = has_wildcards(item) ? path_from(folder_, only_file_for(scan, item, visit)).string()
+                                                       : with_placeholders(item, [&](const std::string& each) {
+                                                             return value_of(scan, each);
+                                                         });
                         } catch (const Error& error) {
                             Refusal refusal{fmt::format("'{}' has no file for `{}`: {}", scan.file.string(), name,
                                                         error.sentence()),

@@ -75,6 +75,20 @@ TEST_F(ObjectsBatch, WorkflowOfSingleScans_RefusesObjects) {
                                   HasSubstr("the object 'a' has 2 views"), HasSubstr("`list: true`"))));
 }
 
+TEST_F(ObjectsBatch, PosesAndNotesThatAPathMatches_AreNotViews) {
+    for (const char* other : {"a/views.conf", "a/notes.md", "b/README.txt", "b/poses.json"})
+        folder_.write(std::string("o/") + other, "x");
+    EXPECT_THAT(scans("[{path: o/*/*, by: folder}]"),
+                ElementsAre(AllOf(StartsWith("b:3:"), HasSubstr("warning: "), HasSubstr("o/a/notes.md' and 3 more"))));
+    ASSERT_THAT(batch_.scans, SizeIs(2));
+    EXPECT_THAT(batch_.scans[0].views, ElementsAre(folder_ / "o/a/v1.ply", folder_ / "o/a/v2.ply"));
+    EXPECT_THAT(batch_.scans[1].views, ElementsAre(folder_ / "o/b/v1.ply"));
+    EXPECT_THAT(scans("[{path: o/a/*.conf, by: folder}]"),
+                ElementsAre(AllOf(HasSubstr("views.conf' is not a scan by its extension"), HasSubstr("*.ply"))));
+    EXPECT_THAT(batch_.scans, IsEmpty());
+    EXPECT_THAT(scans("[{path: o/b/*.txt, by: folder}]"), IsEmpty()) << "texts alone may be points";
+}
+
 TEST_F(ObjectsBatch, FilesInNoFolderOfTheirOwn_AreRefused) {
     folder_.write("v.ply", "x");
     EXPECT_THAT(
