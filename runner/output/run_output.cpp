@@ -168,6 +168,8 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>&
         for (const NodeInput& input : node.inputs)
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
+        for (const ParameterFile& file : node.parameter_files)
+            text += fmt::format("        reads {}\n", shown_path(file.path));
         if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
         cached += !predictions[index].will_run;
         text += predictions[index].will_run ? fmt::format("        will run because {}\n", predictions[index].why)
@@ -191,6 +193,8 @@ Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predic
             entry["file"] = node.leaf.name();
             entry["streamed"] = node.leaf.is_streamed;
         }
+        for (const ParameterFile& file : node.parameter_files)
+            entry["parameter-files"].push_back(shown_path(file.path));
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});

@@ -164,6 +164,17 @@ TEST_F(Objects, MissingPosesAndSettings_FailOnlyTheWorkflowsThatTakeThem) {
                             testing::Pair("plain objects/a", "ok"), testing::Pair("plain objects/b", "ok")));
 }
 
+TEST_F(Objects, DryRun_NamesThePosesOfEachObject) {
+    write_object("objects/a", 2);
+    write_object("objects/b", 2, false);
+    EXPECT_THAT(run({"objects/a", "objects/b", "--dry-run"}).out, HasSubstr("        reads objects/a/views.conf\n"));
+    const Json plan = Json::parse(run({"objects/a", "objects/b", "--dry-run", "--json"}).out);
+    std::vector<Json> files;
+    for (const Json& node : plan["nodes"])
+        if (node["step"] == "merge") files.push_back(node.value("parameter-files", Json()));
+    EXPECT_THAT(files, ElementsAre(Json{"objects/a/views.conf"}, Json()));
+}
+
 TEST_F(Objects, FoldersOnTheCommandLine_AreOneObjectEach) {
     write_object("objects/part.v2", 3);
     write_object("objects/b", 2);

@@ -145,6 +145,9 @@ Json dry_run_schema() {
                               {"in", list_of(input)},
                               {"file?", described("The file that the node reads; absent for other nodes.", text())},
                               {"streamed?", flag()},
+                              {"parameter-files?", described("The files that the parameters of the step name, such as "
+                                                             "one of poses; absent without any.",
+                                                             list_of(text()))},
                               {"unreadable?", described("Why the file cannot be read.", text())},
                               {"cached", flag()},
                               {"why?", described("Why the node will run.", text())}});
