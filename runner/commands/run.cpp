@@ -356,6 +356,7 @@ int run_workflow(const RunOptions& options) {
     const bool finds_poses = takes_poses(plan->workflow) && !settings.contains(poses_parameter);
     for (const ObjectFolder& object : objects) {
         const ObjectPoses poses = finds_poses ? poses_beside(object) : ObjectPoses();
+        if (!poses.idle.empty()) print_warning(poses.idle);
         GraphPart& part = parts.emplace_back(GraphPart{plan, request});
         part.request.scans = {scan_file(object, poses.refusal)};
         if (poses.file.empty()) continue;

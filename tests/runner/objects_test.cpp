@@ -250,6 +250,20 @@ TEST_F(Objects, FileOfSeveralViews_IsAllOfThem) {
     EXPECT_EQ(cloud->columns.find("source")->number(15), 2) << "three views";
 }
 
+TEST_F(Objects, PosesBesideAFileWithItsOwn_AreWarnedOf) {
+    folder_.write("objects/room/all.ptx",
+                  "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+                  "1 0 1 0.5\n2 1 1 0.5\n3 4 1 0.5\n4 9 1 0.5\n");
+    write_poses("objects/room/views.conf", 1);
+    write_objects("{path: objects/*/*.ptx, by: folder}");
+    for (const ProgramResult& ran : {run_batch(), run({"objects/room"})}) {
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        EXPECT_THAT(ran.err, AllOf(HasSubstr("takes the poses in its views, as 'all.ptx'"),
+                                   HasSubstr("'objects/room/views.conf' is not used")));
+    }
+    EXPECT_THAT(run({"objects/room", "--set", "poses=none"}).err, testing::Not(HasSubstr("is not used")));
+}
+
 TEST_F(Objects, Results_AreNoObject_AndNoViews) {
     write_object("o1", 2);
     write_objects("{path: \"*/*.ply\", by: folder}");

@@ -293,6 +293,10 @@ public:
             batch_diagnostics_.warning(
                 {}, fmt::format("for {}, the poses are wrong, too",
                                 count_text(refused_.size() - most_refused, "more object", "more objects")));
+        if (idle_.size() > most_refused)
+            batch_diagnostics_.warning(
+                {}, fmt::format("for {}, a file of poses is not used, too",
+                                count_text(idle_.size() - most_refused, "more object", "more objects")));
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
             batch_diagnostics_.error({}, "has {} cells (scans times variants); expected at most {}: split the batch",
@@ -500,6 +504,8 @@ private:
             scan.poses_file.clear();
             return {};
         }
+        if (is_found && !scan.idle_poses.empty() && idle_.insert(index).second && idle_.size() <= most_refused)
+            batch_diagnostics_.warning(scan.position, scan.idle_poses);
         if (!scan.poses_refusal.empty() && refused_.insert(index).second && refused_.size() <= most_refused)
             batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.poses_refusal.text());
         if (scan.poses_file.empty()) return scan.poses_refusal;
@@ -772,6 +778,7 @@ private:
     std::set<std::string> first_inputs_, further_inputs_;  // names of inputs
     bool takes_scans_ = false, takes_points_ = false;
     static constexpr std::size_t most_refused = 10;
+    std::set<std::size_t> idle_;  // objects with an unused file of poses; warnings name the first
     std::set<std::size_t> refused_;  // objects whose poses are refused; warnings name the first
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown
 };

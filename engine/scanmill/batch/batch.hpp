@@ -66,6 +66,7 @@ struct BatchScan {
     /// latter only where a workflow takes poses and no setting gives them.
     std::filesystem::path poses_file;
     Refusal poses_refusal;  ///< why the poses beside the views cannot be used
+    std::string idle_poses;  ///< ObjectPoses::idle
     Position poses_position;  ///< position of the key `poses`; line 0: poses beside the views
     BatchInput truth;  ///< without files: the scan has no truth
     std::map<std::string, BatchInput> inputs;  ///< by name; check_batch() adds the truth if the batch measures

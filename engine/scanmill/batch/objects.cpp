@@ -163,11 +163,17 @@ ObjectPoses poses_in(const fs::path& file, const ObjectFolder& object) {
 }
 
 ObjectPoses poses_beside(const ObjectFolder& object) {
-    if (std::ranges::any_of(object.views, may_hold_several_views)) return {};
+    const auto own = std::ranges::find_if(object.views, may_hold_several_views);
     std::vector<fs::path> found;
     for (const fs::path& file : listed(object.folder).files)
         if (is_poses_file(file)) found.push_back(file);
     if (found.empty()) return {};
+    if (own != object.views.end())
+        return {{},
+                {},
+                fmt::format("the object '{}' takes the poses in its views, as '{}'; the file of poses '{}' is not used "
+                            "unless `poses` names it",
+                            object.name(), own->filename().string(), found.front().string())};
     if (found.size() > 1)
         return {{},
                 {fmt::format("the object '{}' has {} files of poses, '{}' and '{}'", object.name(), found.size(),

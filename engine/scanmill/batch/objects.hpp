@@ -46,6 +46,7 @@ ObjectFolder object_in(const std::filesystem::path& folder, const OnWarning& war
 struct ObjectPoses {
     std::filesystem::path file;
     Refusal refusal;
+    std::string idle{};  ///< a warning about a file of poses beside the views that is not used; empty without one
 };
 
 /// The poses for the views of an object, in `file`. Refused if the file cannot be read, if a view has no pose in it, or
@@ -53,8 +54,8 @@ struct ObjectPoses {
 /// files may hold several views.
 ObjectPoses poses_in(const std::filesystem::path& file, const ObjectFolder& object);
 
-/// The poses in the file beside the views. Refused if there are two such files, or if poses_in() refuses it. None for
-/// views in formats whose files may hold several views, which have poses of their own.
+/// The poses in the file beside the views. Refused if there are two such files, or if poses_in() refuses it. Views in
+/// formats whose files may hold several views have poses of their own; a file beside them is `idle`.
 ObjectPoses poses_beside(const ObjectFolder& object);
 
 /// Whether the workflow has the parameter for a file of poses.

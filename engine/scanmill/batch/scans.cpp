@@ -408,6 +408,7 @@ private:
             const ObjectPoses beside = poses_beside(views);
             scan.poses_file = beside.file;
             scan.poses_refusal = beside.refusal;
+            scan.idle_poses = beside.idle;
         }
         if (others.empty()) return;
         const std::string more =
