@@ -296,17 +296,30 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
     return inputs;
 }
 
+/// The path without links, `.` and `..`.
+std::filesystem::path resolved(const std::filesystem::path& file) {
+    std::error_code ignored;  // a file that cannot be found is reported when it is read
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
+    return path.has_filename() ? path : path.parent_path();
+}
+
+/// Throws Error if two of the paths lead to one file or folder.
+void require_distinct(const std::vector<std::string>& scans) {
+    std::map<std::filesystem::path, std::string> given;
+    for (const std::string& scan : scans)
+        if (const auto [earlier, is_new] = given.emplace(resolved(scan), scan); !is_new)
+            throw Error("the scan '{}' is given twice{}", scan,
+                        earlier->second == scan ? "" : fmt::format(", also as '{}'", earlier->second))
+                .hint("give each scan once");
+}
+
 /// Adds the files that `--in` gives for the first input. Throws Error if one of them is a scan already.
 void add_scans(std::vector<ScanFile>& scans, const std::string& input,
                const std::vector<std::filesystem::path>& files) {
     std::set<std::filesystem::path> given;
-    const auto absolute = [](const std::filesystem::path& file) {
-        std::error_code ignored;  // a file that cannot be found is reported when it is read
-        return std::filesystem::weakly_canonical(file, ignored);
-    };
-    for (const ScanFile& scan : scans) given.insert(absolute(scan.path));
+    for (const ScanFile& scan : scans) given.insert(resolved(scan.path));
     for (const std::filesystem::path& file : files) {
-        if (!given.insert(absolute(file)).second)
+        if (!given.insert(resolved(file)).second)
             throw Error("the scan '{}' is given twice: `--in {}=…` repeats it", file.string(), input)
                 .hint("scans of the first input need no --in; give each file once");
         scans.emplace_back(file);
@@ -333,6 +346,7 @@ int run_workflow(const RunOptions& options) {
     CheckedWorkflow checked = check_workflow(workflow, text, execution.library(), settings, options.has_picture);
     if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
+    require_distinct(options.scans);
     RunRequest request = options.request;
     std::vector<ObjectFolder> objects;
     for (const std::string& scan : options.scans)

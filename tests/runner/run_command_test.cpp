@@ -156,6 +156,19 @@ TEST(RunCommand, AScanThatIsAlsoGivenAsTheFirstInput_IsRefused) {
     }
 }
 
+TEST(RunCommand, AScanThatIsGivenTwice_IsRefused) {
+    const TemporaryFolder folder;
+    folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
+    std::filesystem::create_symlink("a/s.xyz", folder / "t.xyz");
+    for (const char* other : {"a/s.xyz", "a/../a/s.xyz", "t.xyz"}) {
+        const ProgramResult ran = scanmill_program({"run", shipped("quickstart.yaml"), "a/s.xyz", other, "-o", "out"},
+                                                   {.folder = folder.path()});
+        EXPECT_EQ(ran.exit_code, 2);
+        EXPECT_THAT(ran.err, AllOf(HasSubstr(std::string("the scan '") + other + "' is given twice"),
+                                   HasSubstr("hint: give each scan once")));
+    }
+}
+
 TEST(RunCommand, TwoScansOfOneName_AreRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
