@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "e57/e57_files.hpp"
+#include "formats/e57/e57_files.hpp"
 
 #include <E57Format.h>
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/formats/support.hpp"
-#include "e57/e57_files.hpp"
+#include "formats/e57/e57_files.hpp"
 
 namespace scanmill::test {
 namespace {

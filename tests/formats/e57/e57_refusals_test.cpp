@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/formats/support.hpp"
-#include "e57/e57_files.hpp"
+#include "formats/e57/e57_files.hpp"
 #include "support/e57_pages.hpp"
 
 namespace scanmill::test {
