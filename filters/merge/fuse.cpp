@@ -14,6 +14,7 @@
 #include "scanmill/data/point_tree.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/spatial/cell_grid.hpp"
+#include "scanmill/geometry/spatial/unit_vectors.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::merging {
@@ -52,11 +53,6 @@ struct SampledView {
     Array<Sample> samples;  ///< by row
     double spacing = 0, reach = 0;
 };
-
-Vec3 unit_or_zero(const Vec3& v) {
-    const double length = v.norm();
-    return length > 0 && std::isfinite(length) ? Vec3(v / length) : Vec3(Vec3::Zero());
-}
 
 /// A view's points without the weights of their borders.
 struct Patches {

@@ -17,6 +17,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/filter/inputs.hpp"
+#include "scanmill/geometry/spatial/unit_vectors.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
@@ -49,25 +50,12 @@ void require_one_unit(Views views, std::span<const std::string> names) {
                 .hint("declare the units at the workflow's input, or convert the files first");
 }
 
-/// The unit vectors of a column of directions, one per point; 0 where the column has none. Empty without such a column.
-Array<Vec3> unit_vectors(const PointCloud& view, std::string_view name) {
-    const Column* column = view.columns.find(name);
-    Array<Vec3> directions;
-    if (!column || column->is_list() || column->components() != 3) return directions;
-    for (std::size_t row = 0; row < column->rows(); ++row) {
-        const Vec3 direction(column->number(row, 0), column->number(row, 1), column->number(row, 2));
-        const double length = direction.norm();
-        directions.push_back(length > 0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::Zero());
-    }
-    return directions;
-}
-
 /// The sum of the directions in the column `approach`, else in `normal`; 0 without both.
 Vec3 sum_of_directions(const PointCloud& view) {
     for (const char* column : {"approach", "normal"}) {
         Vec3 sum = Vec3::Zero();
         bool has_any = false;
-        for (const Vec3& direction : unit_vectors(view, column)) {
+        for (const Vec3& direction : unit_vectors(view.columns, column)) {
             sum += direction;
             has_any |= !direction.isZero(0);
         }
@@ -91,7 +79,7 @@ std::optional<std::size_t> seen_from_all_sides(Views views) {
 Array<Vec3> directions_of(const PointCloud& cloud, const std::string& name, Context& context) {
     Array<Vec3> directions(cloud.size(), Vec3::Zero());
     for (const char* column : {"approach", "normal"}) {
-        const Array<Vec3> given = unit_vectors(cloud, column);
+        const Array<Vec3> given = unit_vectors(cloud.columns, column);
         for (std::size_t i = 0; i < given.size(); ++i)
             if (directions[i].isZero(0)) directions[i] = given[i];
     }

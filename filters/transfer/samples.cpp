@@ -7,6 +7,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/spacing.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/spatial/unit_vectors.hpp"
 #include "scanmill/geometry/spatial/vectors.hpp"
 
 namespace scanmill::transferring {
@@ -59,11 +60,6 @@ double facing_weight(const Vec3& direction, const Vec3& normal) {
     return cosine <= least_cosine ? 0 : std::max(cosine, least_weight);
 }
 
-Vec3 unit_or_zero(const Vec3& vector) {
-    const double length = vector.stableNorm();
-    return length > 0 && std::isfinite(length) ? Vec3(vector / length) : Vec3(Vec3::Zero());
-}
-
 void normalise(Array<Sample>& samples) {
     double sum = 0;
     for (const Sample& sample : samples) sum += sample.weight;
@@ -72,17 +68,7 @@ void normalise(Array<Sample>& samples) {
 
 }  // namespace
 
-Array<Vec3> directions_of(const ColumnTable& columns, std::string_view name) {
-    Array<Vec3> directions;
-    const Column* column = columns.find(name);
-    if (!column || column->components() != 3) return directions;
-    directions.resize(column->rows());
-    for (std::size_t row = 0; row < column->rows(); ++row)
-        directions[row] = unit_or_zero({column->number(row, 0), column->number(row, 1), column->number(row, 2)});
-    return directions;
-}
-
-Array<Vec3> normals_of(const PointCloud& cloud) { return directions_of(cloud.columns, "normal"); }
+Array<Vec3> normals_of(const PointCloud& cloud) { return unit_vectors(cloud.columns, "normal"); }
 
 Array<Vec3> normals_of(const TriangleMesh& mesh) {
     Array<Vec3> normals = vertex_area_vectors(mesh);
@@ -97,7 +83,7 @@ PointSamples::PointSamples(const PointCloud& cloud, std::optional<double> max_di
                 for (u32 row = 0; row < cloud.size(); ++row) add(tree_.index_of_row()[row], row);
             }),
       normals_(normals_of(cloud)),
-      approaches_(directions_of(cloud.columns, "approach")),
+      approaches_(unit_vectors(cloud.columns, "approach")),
       max_distance_(max_distance ? *max_distance : default_radii * neighbourhood_radius(tree_, threads)) {}
 
 double PointSamples::facing(u32 row, const Vec3& normal) const {

@@ -35,8 +35,6 @@ struct Samples {
     u32 hint = NearestTriangle::none;
 };
 
-/// Unit vectors from a column of three numbers; 0 for rows without a direction. Empty without such a column.
-Array<Vec3> directions_of(const ColumnTable& columns, std::string_view name);
 /// The directions in which the rows face; 0 if unknown. May be empty.
 Array<Vec3> normals_of(const PointCloud& cloud);
 Array<Vec3> normals_of(const TriangleMesh& mesh);
