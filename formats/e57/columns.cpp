@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -92,7 +93,15 @@ ColumnPlan colour_column(const Scan& scan) {
     const bool are_words = are_integers && least >= 0 && greatest <= 65535;
     plan.name = are_words && !are_bytes ? "colour16" : "colour";
     plan.type = are_words && !are_bytes ? ScalarType::uint16 : ScalarType::uint8;
-    if (are_words) source.low.clear(), source.high.clear();
+    // Limits may be the least and the greatest value of the scan, and stretching these would change the colours.
+    // Therefore integers are scaled by the number of bits that the limits need.
+    const std::uint64_t full = are_words ? std::bit_ceil(static_cast<std::uint64_t>(greatest) + 1) - 1 : 0;
+    if (are_bytes || full == 65535) {
+        source.low.clear(), source.high.clear();
+    } else if (are_words) {
+        source.low.assign(colours.size(), 0);
+        source.high.assign(colours.size(), static_cast<double>(full));
+    }
     plan.sources.emplace(scan.number, std::move(source));
     return plan;
 }
@@ -199,7 +208,8 @@ void GrowingColumn::append_as(const Scan& scan, const Block& block, std::span<co
             const FieldBlock& field = *fields[i];
             if (!source.low.empty()) {
                 const double share = (field.number(row) - source.low[i]) / (source.high[i] - source.low[i]);
-                to[i] = static_cast<T>(share > 0 ? std::floor(255 * std::min(share, 1.0) + 0.5) : 0);  // NaN: 0
+                const double full = sizeof(T) == 1 ? 255 : 65535;
+                to[i] = static_cast<T>(share > 0 ? std::floor(full * std::min(share, 1.0) + 0.5) : 0);  // NaN: 0
             } else if (field.integers.empty()) {
                 to[i] = static_cast<T>(field.reals[row]);  // only floats are planned for reals
             } else {

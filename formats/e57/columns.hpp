@@ -23,7 +23,7 @@ using Block = std::map<std::string, FieldBlock, std::less<>>;  // by the field's
 /// What a column takes from one scan.
 struct ColumnSource {
     std::vector<std::string> fields;  ///< one per component
-    std::vector<double> low, high;  ///< colours that are scaled to bytes: per component; empty for other columns
+    std::vector<double> low, high;  ///< range of colours that are scaled, one per component; empty for other columns
 };
 
 struct ColumnPlan {

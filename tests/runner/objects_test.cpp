@@ -142,16 +142,16 @@ TEST_F(Objects, MissingPosesAndSettings_FailOnlyTheWorkflowsThatTakeThem) {
     write_object("objects/a", 2);
     write_poses("objects/a/second.conf", 2);
     folder_.write("objects/b/v1.ply", content_of(folder_ / "objects/a/v1.ply"));
-    const std::string rest =
-        "steps: [merge: ]\noutputs: {\"{workflow}-{scan}.ply\": merge}\n"
-        "inputs: {views: {kind: points, list: true, frame: \"{stem}\"}}\n";
-    folder_.write("plain.yaml", "scanmill: 1\nname: plain\n" + rest);
-    folder_.write("sized.yaml", "scanmill: 1\nname: sized\nparameters: {file: none}\n" +
-                                    std::string("inputs: {views: {kind: points, list: true, frame: \"{stem}\"}}\n") +
-                                    "steps: [{merge: {poses: $file}}]\noutputs: {\"{workflow}-{scan}.ply\": merge}\n");
+    const auto write_workflow = [&](const std::string& name, const std::string& parameters, const std::string& merge) {
+        folder_.write(name + ".yaml", "scanmill: 1\nname: " + name + "\n" + parameters +
+                                          "inputs: {views: {kind: points, list: true, frame: \"{stem}\"}}\nsteps: [" +
+                                          merge + "]\noutputs: {\"{workflow}-{scan}.ply\": merge}\n");
+    };
+    write_workflow("plain", "", "merge: ");
+    write_workflow("named", "parameters: {file: none}\n", "{merge: {poses: $file}}");
     folder_.write("b.yaml",
                   "scanmill: 1\nbatch: b\nscans: [{path: objects/*/*.ply, by: folder, set: {file: "
-                  "\"{folder}/view?.json\"}}]\nworkflows: [w.yaml, plain.yaml, sized.yaml]\n");
+                  "\"{folder}/view?.json\"}}]\nworkflows: [w.yaml, plain.yaml, named.yaml]\n");
     const ProgramResult ran = run_batch();
     EXPECT_EQ(ran.exit_code, 1) << ran.err;
     const Json report = recorded(1);
@@ -160,8 +160,8 @@ TEST_F(Objects, MissingPosesAndSettings_FailOnlyTheWorkflowsThatTakeThem) {
         outcomes[cell["workflow"].get<std::string>() + " " + cell["scan"].get<std::string>()] = cell["outcome"];
     EXPECT_THAT(outcomes,
                 ElementsAre(testing::Pair("joined objects/a", "failed"), testing::Pair("joined objects/b", "ok"),
-                            testing::Pair("plain objects/a", "ok"), testing::Pair("plain objects/b", "ok"),
-                            testing::Pair("sized objects/a", "failed"), testing::Pair("sized objects/b", "failed")));
+                            testing::Pair("named objects/a", "failed"), testing::Pair("named objects/b", "failed"),
+                            testing::Pair("plain objects/a", "ok"), testing::Pair("plain objects/b", "ok")));
 }
 
 TEST_F(Objects, DryRun_NamesThePosesOfEachObject) {

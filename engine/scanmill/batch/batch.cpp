@@ -462,7 +462,7 @@ private:
             for (const auto& [name, why] : batch.scans[scan].missing_settings)
                 if (settings.contains(name)) refusal = why;
             if (takes_poses(workflow))
-                if (Refusal why = add_poses(scan, settings); !why.empty()) refusal = std::move(why);
+                if (Refusal why = add_poses(scan, workflow, settings); !why.empty()) refusal = std::move(why);
             const auto [group, is_new] = group_of_key.emplace(key_of(settings) + manner, groups.size());
             if (is_new) groups.push_back({std::move(settings), shape, {}, {}});
             groups[group->second].scans.push_back(scan);
@@ -497,7 +497,7 @@ private:
 
     /// Adds the object's poses to the settings. Poses beside the views give way to a setting, which may be `none`.
     /// Returns why they cannot be used.
-    Refusal add_poses(std::size_t index, Settings& settings) {
+    Refusal add_poses(std::size_t index, const Workflow& workflow, Settings& settings) {
         BatchScan& scan = checked_.batch.scans[index];
         const bool is_found = scan.poses_position.line == 0;
         if (is_found && settings.contains(poses_parameter)) {
@@ -509,9 +509,22 @@ private:
         if (!scan.poses_refusal.empty() && refused_.insert(index).second && refused_.size() <= most_refused)
             batch_diagnostics_.warning(is_found ? scan.position : scan.poses_position, scan.poses_refusal.text());
         if (scan.poses_file.empty()) return scan.poses_refusal;
+        report_common_frame(scan, workflow.inputs.front());
         const fs::path file = path_from(fs::path(checked_.batch.file).parent_path(), scan.poses_file);
         settings.insert_or_assign(poses_parameter, text_setting(file.string(), scan.position));
         return scan.poses_refusal;
+    }
+
+    /// Reports views with poses that are all in one frame, because poses belong to views by the names of frames. The
+    /// objects of an entry share its position, which is reported once.
+    void report_common_frame(const BatchScan& object, const WorkflowInput& views) {
+        const std::string& frame = object.frame.empty() ? views.frame : object.frame;
+        if (frame.empty() || frame.find("{stem}") != std::string::npos || object.views.size() < 2) return;
+        if (in_common_frame_.emplace(object.position.line, object.position.column).second)
+            batch_diagnostics_.error(object.position,
+                                     "the {} of the object '{}' have poses, but are all in the frame '{}'; expected "
+                                     "`frame: \"{{stem}}\"`, or `set: {{poses: none}}` for views that need no poses",
+                                     count_text(object.views.size(), "view", "views"), object.name(), frame);
     }
 
     /// Reports poses if no workflow takes them. Scans of one entry share a position, which is reported once.
@@ -778,6 +791,7 @@ private:
     std::set<std::string> first_inputs_, further_inputs_;  // names of inputs
     bool takes_scans_ = false, takes_points_ = false;
     static constexpr std::size_t most_refused = 10;
+    std::set<std::pair<int, int>> in_common_frame_;  // positions of reported entries
     std::set<std::size_t> idle_;  // objects with an unused file of poses; warnings name the first
     std::set<std::size_t> refused_;  // objects whose poses are refused; warnings name the first
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown

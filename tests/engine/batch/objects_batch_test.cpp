@@ -110,6 +110,33 @@ TEST_F(ObjectsBatch, EntriesThatContradictThemselves_AreRefused) {
                 ElementsAre(AllOf(StartsWith("b:3:"), HasSubstr("no workflow has a parameter 'poses'"))));
 }
 
+TEST_F(ObjectsBatch, PosesOfViewsInOneFrame_AreAnErrorOfTheEntry) {
+    for (const char* object : {"a", "c"}) {
+        folder_.write(std::string("o/") + object + "/v1.ply", "x");
+        folder_.write(std::string("o/") + object + "/v2.ply", "x");
+        folder_.write(std::string("o/") + object + "/p.conf", "bmesh v1 0 0 0 0 0 0 1\nbmesh v2 0 0 0 0 0 0 1\n");
+    }
+    const auto write_workflow = [&](const std::string& frame) {
+        folder_.write("posed.yaml", "scanmill: 1\nname: p\ninputs: {views: {kind: points, list: true" + frame +
+                                        "}}\nparameters: {poses: none}\nsteps: [combine: ]\n");
+    };
+    const auto findings_of = [&](const std::string& entry) {
+        std::vector<std::string> found = check_objects(entry, "posed.yaml");
+        std::erase_if(found, [](const std::string& each) { return each.starts_with("posed:"); });
+        return found;
+    };
+    write_workflow("");
+    const std::string path = "path: \"o/[ac]/*.ply\", by: folder";
+    EXPECT_THAT(findings_of("{" + path + ", frame: part}"),
+                ElementsAre(AllOf(StartsWith("b:3:"), HasSubstr("2 views of the object 'a'"),
+                                  HasSubstr("the frame 'part'"), HasSubstr("{stem}"))));
+    EXPECT_THAT(findings_of("{" + path + ", frame: part, set: {poses: none}}"), IsEmpty());
+    EXPECT_THAT(findings_of("{" + path + ", frame: \"f-{stem}\"}"), IsEmpty());
+    write_workflow(", frame: part");
+    EXPECT_THAT(findings_of("{" + path + "}"), ElementsAre(HasSubstr("the frame 'part'")));
+    EXPECT_THAT(findings_of("{" + path + ", frame: \"{stem}\"}"), IsEmpty());
+}
+
 TEST_F(ObjectsBatch, FilesOfPosesBesideTheViews_GoByTheirNames) {
     const ObjectFolder object{folder_ / "o/b", {folder_ / "o/b/v1.ply"}};
     folder_.write("o/b/v1.ply.json", "x");

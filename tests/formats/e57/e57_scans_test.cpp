@@ -176,6 +176,21 @@ TEST(E57Reader, Colours_AreBytesWhereTheLimitsAllowIt) {
         << "values outside of the limits are clamped";
 }
 
+TEST(E57Reader, ColoursOfTenAndTwelveBits_AreScaledTo16) {
+    const auto colours_of = [](E57Scan scan, double limit) {
+        for (const char* channel : {"colorRed", "colorGreen", "colorBlue"})
+            if (limit > 0) scan.limits.emplace_back("colorLimits", std::string(channel) + "Maximum", limit);
+        return numbers_of<std::uint16_t>(points_in(e57_file({scan}), "a.e57")->columns.find("colour16"));
+    };
+    using enum E57Field::Type;
+    EXPECT_THAT(colours_of(coloured(integer, 65535, {0, 2048, 4095}), 4095), ElementsAre(0, 32776, 65535))
+        << "the limits count, not the range of the field";
+    EXPECT_THAT(colours_of(coloured(integer, 1023, {0, 1, 1023}), 0), ElementsAre(0, 64, 65535));
+    EXPECT_THAT(colours_of(coloured(integer, 65535, {0, 5000, 3000}), 3000), ElementsAre(0, 65535, 48011))
+        << "limits of the scan's values have 12 bits, too";
+    EXPECT_THAT(colours_of(coloured(integer, 65535, {0, 300, 60000}), 60000), ElementsAre(0, 300, 60000));
+}
+
 TEST(E57Reader, ScaledNumbers_AreScaled_AndLimitsAreComments) {
     E57Scan scan{{{"cartesianX", E57Field::Type::scaled, {1500}, -100000, 100000, 0.001, 5},
                   reals("cartesianY", {0}),
