@@ -91,12 +91,14 @@ std::optional<Closed> closed_together(const TriangleMesh& mesh, const FilledMesh
 
 void report_doubts(const FillHolesResult& result, double diagonal, std::size_t too_long, double share,
                    Context& context) {
-    if (too_long > 0)
+    if (too_long > 0) {
+        const std::string_view unit = symbol(result.mesh.frame.unit);
         context.doubt(
-            fmt::format("{} longer than the diagonal of the mesh ({:.6g} u), but filled; the longest has {:.6g} u. The "
+            fmt::format("{} longer than the diagonal of the mesh ({:.6g} {}), but filled; the longest has {:.6g} {}. The "
                         "new triangles invent {} as large as the object; `outer: keep` leaves such loops open",
-                        count_text(too_long, "loop is", "loops are"), diagonal, result.longest,
+                        count_text(too_long, "loop is", "loops are"), diagonal, unit, result.longest, unit,
                         by_count(too_long, "a surface", "surfaces")));
+    }
     if (share > doubtful_share)
         context.doubt(
             fmt::format("{:.1f} % of the surface is new, more than {:.0f} %; `outer: keep` leaves large loops open",

@@ -22,6 +22,7 @@ struct Options {
     std::filesystem::path folder;
     std::string against, who, why, metric, format = "text", table;
     std::optional<std::int64_t> run;
+    std::string acknowledge;
     bool accept = false, revoke = false, strict = false, json = false;
 };
 
@@ -29,7 +30,7 @@ bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\n") 
 
 /// Throws Error unless both --who and --why are given.
 void require_reason(const Options& options) {
-    const std::string action = options.accept ? "--accept" : "--revoke";
+    const std::string action = options.accept ? "--accept" : options.revoke ? "--revoke" : "--acknowledge CELL";
     if (!is_blank(options.who) && !is_blank(options.why)) return;
     throw Error("{} needs a name and a reason, which are recorded", action)
         .hint(fmt::format("scanmill report {} {} --who NAME --why TEXT", shell_word(options.folder), action));
@@ -60,6 +61,40 @@ int revoke(const Options& options) {
     return done;
 }
 
+/// "scans/a.ply [fine]": a cell as --acknowledge takes it.
+std::string cell_name(const CellComparison& cell) { return fmt::format("{} [{}]", cell.scan, cell.variant); }
+
+/// Acknowledges the present doubts of the cells that the option names: a scan, or a scan with a variant.
+int acknowledge(const Options& options) {
+    const Comparison comparison = compare_recorded({options.folder, options.run}, std::nullopt, {});
+    std::vector<const CellComparison*> chosen;
+    std::vector<std::string> doubtful;
+    bool is_cell = false;
+    for (const CellComparison& cell : comparison.cells) {
+        const bool is_named = cell.scan == options.acknowledge || cell_name(cell) == options.acknowledge;
+        is_cell = is_cell || is_named;
+        if (cell.doubts.empty()) continue;
+        doubtful.push_back(cell_name(cell));
+        if (is_named) chosen.push_back(&cell);
+    }
+    if (chosen.empty()) {
+        const std::string hint = doubtful.empty() ? "no cell of the run has doubts"
+                                                  : "cells with doubts are " + enumerated(doubtful);
+        throw is_cell ? Error("the cell '{}' of run {} has no doubts", options.acknowledge, comparison.run.id).hint(hint)
+                      : Error("run {} has no cell '{}'{}", comparison.run.id, options.acknowledge,
+                              did_you_mean(options.acknowledge, doubtful))
+                            .hint(hint);
+    }
+    RunRecords records = records_to_change(options.folder);
+    for (const CellComparison* cell : chosen) {
+        records.acknowledge({comparison.batch, cell->workflow, cell->scan, cell->variant, "", options.who, options.why,
+                             cell->doubts});
+        fmt::print("{} of {} {} known now\n", count_text(cell->doubts.size(), "doubt", "doubts"),
+                   printable_line(cell_name(*cell)), by_count(cell->doubts.size(), "is", "are"));
+    }
+    return done;
+}
+
 /// Throws Error unless a cell has the metric.
 void require_metric(const std::string& metric, const Comparison& comparison) {
     const std::vector<std::string> names = metric_names(comparison);
@@ -69,12 +104,12 @@ void require_metric(const std::string& metric, const Comparison& comparison) {
 }
 
 int report(const Options& options) {
-    if (options.accept || options.revoke) {
+    if (options.accept || options.revoke || !options.acknowledge.empty()) {
         require_reason(options);
-        return options.accept ? accept(options) : revoke(options);
+        return options.accept ? accept(options) : options.revoke ? revoke(options) : acknowledge(options);
     }
     if (!options.who.empty() || !options.why.empty())
-        throw Error("--who and --why are for --accept and --revoke").hint("scanmill report --help");
+        throw Error("--who and --why are for --accept, --revoke and --acknowledge").hint("scanmill report --help");
     const RecordedRun which{options.folder, options.run};
     if (!options.table.empty()) {
         write_csv(which, [](const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); });
@@ -110,7 +145,11 @@ void add_report(CLI::App& app, Action& chosen) {
                                            "Accept the run: later runs are compared with it; needs --who and --why");
     CLI::Option* revoke =
         command.add_flag("--revoke", options.revoke, "Revoke the last acceptance; needs --who and --why");
-    command.add_option("--who", options.who, "Name of the person who accepts or revokes; it is recorded");
+    CLI::Option* acknowledge = command.add_option(
+        "--acknowledge", options.acknowledge,
+        "Record that the present doubts of a cell are known, SCAN or 'SCAN [VARIANT]'; needs --who and --why. While "
+        "they are unchanged, the cell is not doubtful in reports");
+    command.add_option("--who", options.who, "Name of the person who accepts, revokes or acknowledges; it is recorded");
     command.add_option("--why", options.why, "The reason; it is recorded");
     CLI::Option* metric =
         command.add_option("--metric", options.metric,
@@ -128,7 +167,8 @@ void add_report(CLI::App& app, Action& chosen) {
     format->excludes(json);
     for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
     accept->excludes(revoke);
-    for (CLI::Option* action : {accept, revoke})
+    acknowledge->excludes(accept)->excludes(revoke);
+    for (CLI::Option* action : {accept, revoke, acknowledge})
         for (CLI::Option* other : {against, metric, format, table, json}) action->excludes(other);
 }
 

@@ -263,7 +263,12 @@ int Execution::run(const SessionTask& task, bool is_batch) {
                : report.has_fault()                                                       ? our_fault
                                                                                           : some_failed;
     std::optional<Comparison> comparison;
-    if (is_batch && !report.interrupted) comparison = judge(task, number, code);
+    if (is_batch && !report.interrupted) {
+        // Known doubts do not count, so the comparison decides whether a doubtful result is an error.
+        if (options_.strict && report.outcome() == Outcome::doubtful) code = done;
+        comparison = judge(task, number, code);
+        if (options_.strict && report.outcome() == Outcome::doubtful && !comparison) code = std::max<int>(code, some_failed);
+    }
 
     if (events) {
         if (comparison) events->judged(verdict_event(*comparison));

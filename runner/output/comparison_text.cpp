@@ -13,7 +13,8 @@ namespace scanmill::runner {
 
 namespace {
 
-constexpr std::size_t most_rules = 8, most_changes = 10, most_reasons = 10, most_scans = 20, most_commands = 3;
+constexpr std::size_t most_rules = 8, most_changes = 10, most_reasons = 10, most_known = 5, most_scans = 20,
+                      most_commands = 3;
 
 std::string rest_text(const std::string& rest) { return rest.empty() ? "" : rest + "\n"; }
 
@@ -83,6 +84,8 @@ std::string comparison_text(const Comparison& comparison, const std::filesystem:
         text += "\nWhat changed\n" + table_text(changes, {"scan", "variant", "what"}, width) + rest_text(changes.rest);
     if (const ReportTable reasons = reason_table(comparison, most_reasons); !reasons.rows.empty())
         text += "\nWhy\n" + reason_text(reasons) + rest_text(reasons.rest);
+    if (const ReportTable known = known_table(comparison, most_known); !known.rows.empty())
+        text += "\nKnown doubts\n" + table_text(known, {"scan", "variant", "why"}, width) + rest_text(known.rest);
     if (const std::vector<std::string> commands = commands_of(comparison); !commands.empty()) {
         text += "\nTo reproduce\n";
         for (std::size_t i = 0; i < std::min(commands.size(), most_commands); ++i) text += commands[i] + "\n";

@@ -85,6 +85,24 @@ TEST(Guide, ConsoleBlocks_AreAllRun) {
     }
 }
 
+/// The mark of a file is a comment, which a reader of the page does not see.
+TEST(Guide, NamesOfFiles_AreInTheParagraphBefore) {
+    for (const auto& entry : fs::recursive_directory_iterator(source / "docs")) {
+        if (entry.path().extension() != ".md") continue;
+        std::istringstream lines(content_of(entry.path()));
+        std::string before, paragraph;
+        for (std::string line; std::getline(lines, line);) {
+            const std::string mark = "<!-- file: ";
+            if (line.starts_with(mark)) {
+                const std::string name = line.substr(mark.size(), line.find(" -->") - mark.size());
+                EXPECT_THAT(paragraph, testing::HasSubstr(name)) << entry.path();
+            }
+            if (line.empty()) paragraph = before;
+            before = line.empty() ? "" : before + line + "\n";
+        }
+    }
+}
+
 TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the guide builds without sanitizers, which a module must share with the program";

@@ -34,9 +34,9 @@ TEST_F(InvalidPoints, RefusedScan_NamesTheOptionAndTheKey) {
 }
 
 TEST_F(InvalidPoints, DroppedPoints_AreInTheTableTheJsonAndTheRecords) {
-    const ProgramResult table = run({"a.xyz", "--invalid", "drop"});
+    const ProgramResult table = run({"a.xyz", "--invalid", "drop", "--wide"});
     EXPECT_EQ(table.exit_code, 0) << table.err;
-    EXPECT_THAT(table.out, AllOf(HasSubstr("dropped-points"), testing::ContainsRegex("a.xyz +4 +1 ")));
+    EXPECT_THAT(table.out, AllOf(HasSubstr("dropped-points"), testing::ContainsRegex("a.xyz +ok +4 +1 ")));
     EXPECT_THAT(table.err, HasSubstr("warning: 'a.xyz': 1 of 5 points was dropped"));
     const Json report = Json::parse(run({"a.xyz", "--invalid", "drop", "--json"}).out);
     const Json read = of_step(report, "read").at(0);

@@ -114,6 +114,66 @@ TEST_F(ReportCommand, FailedAndDoubtfulCells_DecideTheExitCode) {
     EXPECT_EQ(report().exit_code, 4);
 }
 
+TEST_F(ReportCommand, AcknowledgedDoubts_AreKnown_UntilANewOneComes) {
+    const auto night = [](const std::vector<std::string>& doubts) {
+        RunDetails run = run_of_one(1, 0.5, rules);
+        run.cells[0].outcome = doubts.empty() ? Outcome::ok : Outcome::doubtful;
+        run.cells[0].doubts = doubts;
+        return run;
+    };
+    const std::string hole = "fill-holes: 8 % of the surface is new", noise = "region-grow: the surface is rough";
+    record(night({hole}), "out", "doubtful");
+    EXPECT_THAT(report().out, StartsWith("nightly: doubtful\n"));
+    const ProgramResult known =
+        report({"--acknowledge", "scans/a.ply", "--who", "Ann", "--why", "the base was not scanned"});
+    EXPECT_EQ(known.exit_code, 0) << known.err;
+    EXPECT_EQ(known.out, "1 doubt of scans/a.ply [default] is known now\n");
+    const ProgramResult after = report({"--strict"});
+    EXPECT_EQ(after.exit_code, 0) << "a known doubt does not count";
+    EXPECT_THAT(after.out, AllOf(StartsWith("nightly: new\n1 cell: 1 new; the doubts of 1 are known\n"),
+                                 HasSubstr("Known doubts\n"), HasSubstr("the base was not scanned")));
+    EXPECT_EQ(json::parse(report({"--json"}).out)["report"]["cells"][0]["known"]["who"], "Ann");
+    EXPECT_EQ(json::parse(report({"--json"}).out)["report"]["cells"][0]["doubts"][0], hole);
+    record(night({hole, noise}), "out", "doubtful");
+    EXPECT_EQ(report({"--strict"}).exit_code, 1) << "one doubt is new";
+    EXPECT_THAT(report().out, StartsWith("nightly: doubtful\n"));
+    report({"--acknowledge", "scans/a.ply [default]", "--who", "Bob", "--why", "looked at it"});
+    EXPECT_THAT(report().out, AllOf(StartsWith("nightly: new\n"), HasSubstr("Bob")));
+    record(night({noise}), "out", "doubtful");
+    EXPECT_THAT(report().out, StartsWith("nightly: new\n")) << "fewer doubts than are known";
+    EXPECT_THAT(report({"--format", "markdown"}).out, HasSubstr("**Known doubts**"));
+}
+
+TEST_F(ReportCommand, AKnownDoubt_HidesNoRegression) {
+    RunDetails run = run_of_one(1, 0.5, rules);
+    record(run);
+    accept("1");
+    run = run_of_one(2, 0.75, rules);
+    run.cells[0].outcome = Outcome::doubtful;
+    run.cells[0].doubts = {"rough"};
+    record(run, "out", "doubtful");
+    report({"--acknowledge", "scans/a.ply", "--who", "Ann", "--why", "x"});
+    EXPECT_EQ(report().exit_code, 4);
+    EXPECT_THAT(report().out, StartsWith("nightly: regressed\n"));
+}
+
+TEST_F(ReportCommand, Acknowledge_RefusesWhatIsNotDoubtful) {
+    RunDetails run = run_of_one(1, 0.5, rules);
+    add_cell(run, "jobs/scans/b.ply").doubts = {"rough"};
+    run.cells[1].outcome = Outcome::doubtful;
+    record(run, "out", "doubtful");
+    const auto refusal = [&](const std::string& cell) {
+        const ProgramResult refused = report({"--acknowledge", cell, "--who", "Ann", "--why", "x"});
+        EXPECT_EQ(refused.exit_code, 2);
+        return refused.err;
+    };
+    EXPECT_THAT(refusal("scans/a.ply"), AllOf(HasSubstr("the cell 'scans/a.ply' of run 1 has no doubts"),
+                                              HasSubstr("cells with doubts are scans/b.ply [default]")));
+    EXPECT_THAT(refusal("scans/c.ply"), HasSubstr("run 1 has no cell 'scans/c.ply'"));
+    EXPECT_THAT(report({"--acknowledge", "scans/b.ply", "--who", "Ann"}).err, HasSubstr("needs a name and a reason"));
+    EXPECT_EQ(report({"--acknowledge", "scans/b.ply", "--accept", "--who", "A", "--why", "x"}).exit_code, 2);
+}
+
 TEST_F(ReportCommand, Against_ComparesFolders) {
     record(run_of_one(1, 0.5, rules), "main");
     record(run_of_one(2, 0.6, rules), "main");
@@ -203,7 +263,7 @@ TEST_F(ReportCommand, Acceptances_NeedANameAndAReason) {
         EXPECT_EQ(refused.exit_code, 2);
         EXPECT_THAT(refused.err, AllOf(HasSubstr("needs a name and a reason"), HasSubstr("--who NAME --why TEXT")));
     }
-    EXPECT_THAT(report({"--who", "Ann"}).err, HasSubstr("--who and --why are for --accept and --revoke"));
+    EXPECT_THAT(report({"--who", "Ann"}).err, HasSubstr("--who and --why are for --accept, --revoke and --acknowledge"));
     EXPECT_EQ(report({"--accept", "--revoke", "--who", "A", "--why", "x"}).exit_code, 2);
     EXPECT_EQ(report({"--accept", "--json", "--who", "A", "--why", "x"}).exit_code, 2);
     EXPECT_THAT(report().out, StartsWith("nightly: new\n")) << "nothing was accepted";

@@ -37,7 +37,7 @@ protected:
         EXPECT_EQ(scanmill({"run", "scan.yaml", "-o", "."}).exit_code, 0);
         folder_.write("mesh.yaml",
                       "scanmill: 1\nname: mesh\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
-                      "  - id: surface\n    region-grow:\n  - measure:\n    in: {mesh: surface, truth: scan}\n"
+                      "  - id: surface\n    region-grow:\n  - measure:\n    in: {mesh: surface, truth: surface}\n"
                       "outputs: {'{scan}.ply': surface, '{scan}.json': measure}\n");
     }
     ProgramResult scanmill(const std::vector<std::string>& arguments) {

@@ -276,6 +276,15 @@ const ScanPose& pose_of(const fs::path& scan, const std::vector<ScanPose>& poses
                 did_you_mean(name, names));
 }
 
+/// Whether a run wrote the file beside its outputs: the records, the lock, or the description of an output that is there.
+bool is_own_file(const fs::path& file) {
+    const std::string name = file.filename().string();
+    if (name.starts_with(records_file) || name == "scanmill.lock") return true;
+    std::error_code ignored;
+    return file.extension() == ".json" && fs::path(file.stem()).has_extension() &&
+           fs::is_regular_file(fs::path(file).replace_extension(), ignored);
+}
+
 class ScansParser {
 public:
     ScansParser(const fs::path& folder, Diagnostics& diagnostics) : folder_(folder), diagnostics_(diagnostics) {}
@@ -352,8 +361,12 @@ private:
         try {
             const auto warn = [&](std::string sentence) { diagnostics_.warning(position, std::move(sentence)); };
             std::vector<fs::path> files;
+            const bool is_pattern = path.find_first_of("*?[") != std::string::npos;
             for (const fs::path& file : scan_files(folder_, path, warn))
-                if (is_new(file, position)) files.push_back(without_detours(file));
+                if (!(is_pattern && is_own_file(file)) && is_new(file, position))
+                    files.push_back(without_detours(file));
+            if (files.empty() && is_pattern && !diagnostics_.has_errors())
+                diagnostics_.error(position, "'{}' matches only files that Scanmill wrote beside results", path);
             if (by_folder) return add_objects(objects_of(files), position);
             for (fs::path& file : files) add_scan(std::move(file), position);
         } catch (const Error& error) {

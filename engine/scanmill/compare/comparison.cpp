@@ -184,14 +184,17 @@ public:
         result_.outcome = name_of(cell.outcome);
         result_.seconds = cell.seconds;
         result_.passes = cell.costs;
+        result_.doubts = cell.doubts;
         result_.values = values_of(cell, steps);
         for (const OutputRecord& output : cell.outputs)
             if (!output.moved_to.empty()) result_.moved.push_back(fs::path(output.moved_to).filename().string());
     }
 
     /// The verdict. `accepted` is null if the accepted run does not have the cell. `past` are costs of earlier passes.
+    /// `known`: acknowledgements of the cell.
     CellComparison judged(const CellRecord* accepted, const StepsByNode& accepted_steps,
-                          const std::vector<CostRecord>& past) {
+                          const std::vector<CostRecord>& past, const std::vector<const Acknowledgement*>& known) {
+        find_known(known);
         if (cell_.outcome == Outcome::failed) {
             result_.reasons.push_back(failure_text(cell_.failure));
             if (accepted && accepted->outcome == Outcome::failed)
@@ -225,6 +228,18 @@ public:
     }
 
 private:
+    /// Sets `known` if the acknowledgements have all doubts of the cell.
+    void find_known(const std::vector<const Acknowledgement*>& all) {
+        if (result_.doubts.empty()) return;
+        const auto is_known = [&](const std::string& doubt) {
+            return std::ranges::any_of(all, [&](const Acknowledgement* each) {
+                return std::ranges::find(each->doubts, doubt) != each->doubts.end();
+            });
+        };
+        if (std::ranges::all_of(result_.doubts, is_known))
+            result_.known = KnownDoubts{all.back()->who, all.back()->why, all.back()->at};
+    }
+
     static std::string failure_text(const FailureRecord& failure) {
         std::string text = first_line(failure.error);
         if (text.empty()) text = "the cell failed";
@@ -465,7 +480,7 @@ private:
         } else if (!inapplicable_.empty()) {
             result_.verdict = Verdict::failed;
             result_.reasons = std::move(inapplicable_);
-        } else if (cell_.outcome == Outcome::doubtful) {
+        } else if (cell_.outcome == Outcome::doubtful && !result_.known) {
             result_.verdict = Verdict::doubtful;
             result_.reasons = cell_.doubts;
         } else if (!improvements_.empty()) {
@@ -559,7 +574,8 @@ void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* ba
 
 }  // namespace
 
-Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command) {
+Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command,
+                   const std::vector<Acknowledgement>& acknowledged) {
     Comparison comparison;
     comparison.batch = run.start.workflow;
     comparison.file = run.start.file;
@@ -578,11 +594,15 @@ Comparison compare(const RunDetails& run, const Baseline* baseline, const Comman
     const StepsByNode steps = steps_by_node(run), accepted_steps = steps_by_node(accepted_run);
     const CellTable cells(run), accepted_cells(accepted_run);
     const Pools pools(baseline ? baseline->costs : std::vector<PastCosts>(), run.start.file);
+    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const Acknowledgement*>> known;  // by cell
+    for (const Acknowledgement& each : acknowledged) known[{each.workflow, each.scan, each.variant}].push_back(&each);
     for (const std::size_t i : in_plan_order(run.cells)) {
         const CellRecord& cell = run.cells[i];
         const CellRecord* accepted = accepted_cells.find(cells.key(i));
         CellComparison& judged = comparison.cells.emplace_back(
-            CellJudge(comparison.gate, cell, steps).judged(accepted, accepted_steps, pools.of(cells.key(i))));
+            CellJudge(comparison.gate, cell, steps)
+                .judged(accepted, accepted_steps, pools.of(cells.key(i)),
+                        known[{cell.workflow, std::get<1>(cells.key(i)), cell.variant}]));
         judged.scan = std::get<1>(cells.key(i));
         const bool is_fine = judged.verdict == Verdict::passed || judged.verdict == Verdict::is_new;
         if (accepted && !is_fine) judged.causes = causes_of(cell, steps, *accepted, accepted_steps);

@@ -7,6 +7,7 @@
 /// even if the machine or the version changed. Costs are compared only with earlier runs on the same machine
 /// (costs.hpp).
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -103,11 +104,22 @@ constexpr auto fields(const CostChange*) {
         field("effect", &R::effect)};
 }
 
+/// Who knows the doubts of a cell, and why they do not count.
+struct KnownDoubts {
+    std::string who, why, at;
+};
+constexpr auto fields(const KnownDoubts*) {
+    using R = KnownDoubts;
+    return std::tuple{field("who", &R::who), field("why", &R::why), field("at", &R::at)};
+}
+
 struct CellComparison {
     std::string workflow, scan, variant;  ///< the scan's path is relative to the batch's folder
     std::string outcome;  ///< outcome in this run; empty: only the accepted run has the cell
     Verdict verdict = Verdict::passed;
     std::vector<std::string> reasons;  ///< reasons for the verdict, a sentence each
+    std::vector<std::string> doubts;
+    std::optional<KnownDoubts> known;  ///< all doubts are acknowledged, so that the cell is not doubtful
     std::vector<std::string> causes;  ///< differences in files and steps; empty for passed and new cells
     std::vector<MetricChange> metrics;  ///< sorted by effect: regressions, improvements, others; then by size
     std::vector<OutputChange> outputs;
@@ -126,6 +138,8 @@ constexpr auto fields(const CellComparison*) {
         field("variant", &R::variant),
         field("verdict", &R::verdict),
         field("reasons", &R::reasons),
+        field("doubts", &R::doubts, "Doubts of filters.").optional(),
+        field("known", &R::known, "The last acknowledgement, if all doubts are acknowledged."),
         field("causes", &R::causes, "Differences in the cell's files and steps."),
         field("seconds", &R::seconds),
         field("metrics", &R::metrics),
@@ -163,6 +177,10 @@ struct Comparison {
     std::vector<std::string> notes;  ///< a sentence each, as "the machine changed: …"
     std::vector<CellComparison> cells;  ///< scan by scan, and variant by variant within a scan; absent cells last
 
+    /// Number of cells whose doubts are all acknowledged.
+    std::size_t known() const {
+        return static_cast<std::size_t>(std::ranges::count_if(cells, [](const auto& cell) { return cell.known.has_value(); }));
+    }
     std::size_t count(Verdict of) const { return counts[static_cast<std::size_t>(of)]; }
     /// Whether a cell regressed or is missing.
     bool tripped() const { return count(Verdict::regressed) + count(Verdict::missing) > 0; }
@@ -179,10 +197,12 @@ struct Baseline {
 /// Returns the command that runs the cell again. `scan` is the scan's path relative to the batch's folder.
 using CommandFor = std::function<std::string(const RunDetails& run, const CellRecord& cell, const std::string& scan)>;
 
-/// Compares `run` with `baseline`. Without a baseline, cells that are not failed, missing or doubtful are new.
+/// Compares `run` with `baseline`. Without a baseline, cells that are not failed, missing or doubtful are new. A cell is
+/// not doubtful if `acknowledged` has all of its doubts.
 /// `command` is called for the cells that are neither passed nor new. Throws Error for a recorded rule for costs that
 /// cannot be read. Cost: linear in the recorded rows.
-Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command = {});
+Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command = {},
+                   const std::vector<Acknowledgement>& acknowledged = {});
 
 /// A change of one cell, for the list of all changes.
 struct RankedChange {

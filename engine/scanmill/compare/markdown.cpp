@@ -75,6 +75,7 @@ std::string markdown(const Comparison& comparison, const std::string& metric) {
     text += table_text("By rule and variant", rule_table(comparison, most_rows));
     text += table_text("What changed", change_table(comparison, most_rows));
     text += table_text("Why", reason_table(comparison, most_rows));
+    text += table_text("Known doubts", known_table(comparison, most_rows));
     text += table_text(metric, matrix(comparison, metric, most_rows));
     std::string commands;
     for (const std::string& command : commands_of(comparison)) commands += command + "\n";

@@ -28,7 +28,7 @@ struct RecordedRun {
 Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against,
                             const CommandFor& command);
 
-/// The comparison at the end of a batch; empty if the batch has no gate and no run was accepted.
+/// The comparison at the end of a batch; empty if the batch has no gate, no run was accepted and no doubt is known.
 std::optional<Comparison> verdict_of_batch(const std::filesystem::path& folder, std::int64_t run,
                                            const CommandFor& command);
 

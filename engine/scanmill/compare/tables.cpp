@@ -183,7 +183,9 @@ std::string counts_text(const Comparison& comparison) {
     for (const Verdict verdict : all_verdicts)
         if (comparison.count(verdict) > 0)
             counts.push_back(fmt::format("{} {}", comparison.count(verdict), name_of(verdict)));
-    return fmt::format("{}: {}", count_text(comparison.cells.size(), "cell", "cells"), fmt::join(counts, ", "));
+    const std::size_t known = comparison.known();
+    return fmt::format("{}: {}{}", count_text(comparison.cells.size(), "cell", "cells"), fmt::join(counts, ", "),
+                       known > 0 ? fmt::format("; the doubts of {} are known", known) : "");
 }
 
 std::string runs_text(const Comparison& comparison) {
@@ -287,6 +289,19 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
         }
     }
     if (left_out > 0) table.rest = fmt::format("and {}", count_text(left_out, "more cell", "more cells"));
+    return table;
+}
+
+ReportTable known_table(const Comparison& comparison, std::size_t most) {
+    ReportTable table{{"scan", "variant", "known to", "since", "why"}, {}, {}};
+    const bool with_workflow = has_several_workflows(comparison);
+    for (const CellComparison& cell : comparison.cells) {
+        if (!cell.known || table.rows.size() == most) continue;
+        table.rows.push_back({cell.scan, variant_text(cell, with_workflow), cell.known->who, cell.known->at.substr(0, 10),
+                              cell.known->why});
+    }
+    if (comparison.known() > table.rows.size())
+        table.rest = fmt::format("and {}", count_text(comparison.known() - table.rows.size(), "more cell", "more cells"));
     return table;
 }
 

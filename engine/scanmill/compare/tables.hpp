@@ -42,6 +42,9 @@ ReportTable change_table(const Comparison& comparison, std::size_t most);
 /// change_table() shows. Variants of a scan with the same text share a row. The table has at most `most` rows.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
+/// A table of the cells whose doubts are all acknowledged: scan, variant, who, when and why. It has at most `most` rows.
+ReportTable known_table(const Comparison& comparison, std::size_t most);
+
 /// A table of one metric with a row per scan and a column per variant, or with a row per variant if there is only one
 /// scan; the unit is in the first header. A value is followed by `!` if it regressed, and by `?` if its cell is
 /// doubtful. If a cell that did not pass lacks the value, the table shows the verdict. The table has at most `most`

@@ -36,6 +36,9 @@ void require_fed(const RunRequest& request, const Plan& plan) {
     const std::vector<WorkflowInput>& inputs = plan.workflow.inputs;
     if (inputs.empty() && !request.scans.empty())
         throw Error("the workflow declares no inputs and takes no scans; scans given: {}", request.scans.size());
+    if (inputs.empty() && request.unit != LengthUnit::unknown)
+        throw Error("the workflow declares no inputs, so the unit '{}' belongs to no scan", symbol(request.unit))
+            .hint("write lengths with units in the workflow, or give the unit where the results are read");
     if (!inputs.empty() && request.scans.empty())
         throw Error("no scan was given for the workflow's input '{}'", inputs.front().name)
             .hint("name at least one scan")

@@ -68,6 +68,7 @@ struct GateVerdict {
 };
 constexpr auto fields(const GateVerdict*) { return std::tuple{field("regressions", &GateVerdict::regressions)}; }
 constexpr const char* verdict_table = "gate_verdict";
+constexpr const char* acknowledgement_table = "acknowledgement";  // not part of layout(), either
 
 const std::string& layout() {
     static const std::string sql =
@@ -378,6 +379,32 @@ std::optional<Acceptance> RunRecords::baseline(const std::string& batch) const {
     for (Acceptance& acceptance : acceptances())
         if (acceptance.batch == batch && !acceptance.revoked_at) last = std::move(acceptance);
     return last;
+}
+
+void RunRecords::acknowledge(Acknowledgement acknowledgement) {
+    about(database_->file, [&] {
+        acknowledgement.at = now();
+        SQLite::Transaction transaction(database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
+        if (!database_->sqlite.tableExists(acknowledgement_table))
+            database_->sqlite.exec(tables::creation<Acknowledgement>(acknowledgement_table, ""));
+        tables::insert(database_->statements, acknowledgement_table, acknowledgement);
+        transaction.commit();
+    });
+}
+
+std::vector<Acknowledgement> RunRecords::acknowledgements(const std::string& batch) const {
+    return about(database_->file, [&] {
+        std::vector<Acknowledgement> all;
+        if (!database_->sqlite.tableExists(acknowledgement_table)) return all;
+        SQLite::Statement ids(database_->sqlite,
+                              fmt::format("SELECT id FROM {} WHERE batch = ? ORDER BY id", acknowledgement_table));
+        ids.bind(1, batch);
+        while (ids.executeStep())
+            if (auto row = tables::read_row<Acknowledgement>(database_->sqlite, acknowledgement_table,
+                                                             ids.getColumn(0).getInt64()))
+                all.push_back(std::move(*row));
+        return all;
+    });
 }
 
 std::vector<PastCosts> RunRecords::past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const {

@@ -5,7 +5,8 @@
 /// Rows are never changed, and removed only with their whole run. A run without an end is still running or was killed. The file may be on a network
 /// file system, because it uses a rollback journal. Any SQLite program can read it. Its tables derive from the fields
 /// of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with other fields refuses the file.
-/// The table `gate_verdict` is created for the first run that a gate judges; files without it are accepted.
+/// The tables `gate_verdict` and `acknowledgement` are created when they get their first rows; files without them are
+/// accepted.
 
 #include <filesystem>
 #include <functional>
@@ -26,6 +27,19 @@ struct Acceptance {
     std::optional<std::string> revoked_at;
     std::string revoked_by, revoked_why;
 };
+
+/// Doubts of a cell that a person looked at and knows. They stay known while they are unchanged.
+struct Acknowledgement {
+    std::string batch, workflow, scan, variant;  ///< the scan's path is relative to the batch's folder
+    std::string at, who, why;
+    std::vector<std::string> doubts;
+};
+constexpr auto fields(const Acknowledgement*) {
+    using R = Acknowledgement;
+    return std::tuple{field("batch", &R::batch), field("workflow", &R::workflow), field("scan", &R::scan),
+                      field("variant", &R::variant), field("at", &R::at), field("who", &R::who),
+                      field("why", &R::why), field("doubts", &R::doubts)};
+}
 
 /// The costs of a cell in earlier runs.
 struct PastCosts {
@@ -84,6 +98,10 @@ public:
     std::vector<Acceptance> acceptances() const;
     /// The newest acceptance of this batch that was not revoked.
     std::optional<Acceptance> baseline(const std::string& batch) const;
+    /// Records that these doubts of a cell are known; `at` is set to now. Earlier acknowledgements of the cell hold, too.
+    void acknowledge(Acknowledgement acknowledgement);
+    /// The acknowledgements of the cells of this batch, oldest first.
+    std::vector<Acknowledgement> acknowledgements(const std::string& batch) const;
     /// The costs of cells in earlier runs with numbers `first` <= run < `end`. Considers only runs that have the
     /// workflow, machine, threads and jobs of `like` and that measured costs; of these, the newest `most_past_runs`.
     static constexpr int most_past_runs = 20;

@@ -78,6 +78,20 @@ TEST_F(BatchFile, MissingKeys_GiveNoLimitsAndNoValues) {
     EXPECT_EQ(batch_.limits, Limits{});
 }
 
+TEST_F(BatchFile, FilesThatRunsWriteBesideResults_AreNoScansOfAPattern) {
+    for (const char* file : {"own/a.ply", "own/a.ply.json", "own/scanmill.sqlite", "own/scanmill.sqlite-journal",
+                             "own/pose.json", "none/scanmill.lock"})
+        folder_.write(file, "x");
+    EXPECT_THAT(findings("scanmill: 1\nbatch: b\nscans: [\"own/*\"]\nworkflows: [w.yaml]\n"), IsEmpty());
+    ASSERT_EQ(batch_.scans.size(), 2u);
+    EXPECT_EQ(batch_.scans[0].file, folder_ / "own/a.ply");
+    EXPECT_EQ(batch_.scans[1].file, folder_ / "own/pose.json") << "not the description of a file that is there";
+    EXPECT_THAT(findings("scanmill: 1\nbatch: b\nscans: [\"none/*\"]\nworkflows: [w.yaml]\n"),
+                ElementsAre(HasSubstr("'none/*' matches only files that Scanmill wrote beside results")));
+    EXPECT_THAT(findings("scanmill: 1\nbatch: b\nscans: [own/a.ply.json]\nworkflows: [w.yaml]\n"), IsEmpty())
+        << "named by its path";
+}
+
 TEST_F(BatchFile, ManyMistakes_AreAllFoundInOneGoWithTheirPlace) {
     EXPECT_THAT(
         findings(R"(scanmill: 1

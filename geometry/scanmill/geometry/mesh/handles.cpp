@@ -233,7 +233,7 @@ std::vector<std::string> doubts_about_handles(const TriangleMesh& mesh, Executio
     if (loops.empty()) return {};
     const auto where = [&](const HandleLoop& loop) {
         const Vec3 at = mesh.positions[loop.vertices.front()] + mesh.frame.origin;
-        return fmt::format("the shortest, of {:.2g} spacings, is at ({:.6g}, {:.6g}, {:.6g})", loop.length / spacing,
+        return fmt::format("the shortest, of {:.3g} spacings, is at ({:.6g}, {:.6g}, {:.6g})", loop.length / spacing,
                            at.x(), at.y(), at.z());
     };
     const std::vector<bool> filled = is_invented ? std::vector<bool>() : vertices_of_filled(mesh);
