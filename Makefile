@@ -12,9 +12,10 @@ help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
 
 demo: release data ## turn scans into closed meshes and print tables
-	build/release/bin/scanmill run workflows/virtual-scans.yaml build/data/meshes/hand.off --set "noise=0.05 %diag" -o build/virtual-views -q
-	build/release/bin/scanmill run workflows/raw-scans.yaml build/virtual-views/hand-default.ply -o build/demo
-	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
+	cp build/data/meshes/ChineseDragon-10kv.off build/lion.off
+	build/release/bin/scanmill run workflows/virtual-scans.yaml build/lion.off --set "noise=0.15 %diag" -o build/virtual-views -q
+	build/release/bin/scanmill run workflows/raw-scans.yaml build/virtual-views/lion-default.ply -o build/demo --picture -q
+	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo -q
 
 nightly: release ## compare four surfaces of virtual scans with the accepted run, and print the report
 	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)

@@ -194,6 +194,7 @@ FittedTable Table::fitted(std::optional<std::size_t> width) const {
     };
     std::vector<bool> is_left_out(widths.size(), false);
     FittedTable result;
+    const std::vector<std::size_t> whole = widths;
     if (!to_leave_out_.empty()) cut_names(true);
     for (const std::size_t column : to_leave_out_) {
         if (!is_too_wide()) break;
@@ -201,6 +202,11 @@ FittedTable Table::fitted(std::optional<std::size_t> width) const {
         total -= widths[column] + gap;
         ++result.left_out;
     }
+    // What was left out may have made more room than the names need.
+    for (std::size_t column = 0; column < widths.size(); ++column)
+        if (!is_left_out[column]) total += whole[column] - widths[column];
+    widths = whole;
+    if (!to_leave_out_.empty()) cut_names(true);
     cut_names(false);
     for (const std::vector<std::string>& row : rows_) {
         std::string line;

@@ -62,10 +62,11 @@ INSTANTIATE_TEST_SUITE_P(Docs, GuidePage, testing::ValuesIn(pages_with_commands(
 
 /// The commands of the first page, after what `make demo` does before them.
 TEST(Guide, TheFirstPage_PrintsWhatItShows) {
-    SCANMILL_REAL_SCAN(model, fetched_data, "meshes/hand.off");
+    SCANMILL_REAL_SCAN(model, fetched_data, "meshes/ChineseDragon-10kv.off");
     const TemporaryFolder folder;
+    fs::copy_file(model, folder / "lion.off");
     const ProgramResult scanned =
-        scanmill_program({"run", "virtual-scans", model.string(), "--set", "noise=0.05 %diag", "-o",
+        scanmill_program({"run", "virtual-scans", (folder / "lion.off").string(), "--set", "noise=0.15 %diag", "-o",
                           (folder / "build/virtual-views").string(), "-q"});
     ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
     const Guide guide = read_guide(source / "README.md");

@@ -75,6 +75,11 @@ TEST(Table, ColumnsAreLeftOut_BeforeNamesGetShorterThanComfortable) {
     EXPECT_THAT(narrow.text, StartsWith("scan"));
     EXPECT_THAT(narrow.text, Not(HasSubstr("metric")));
     EXPECT_EQ(widest(table.fitted(30).text), 30u);
+    Table wide({"scan", "metric", "files"});
+    wide.add({std::string(26, 's'), std::string(40, '1'), std::string(26, 'f')});
+    wide.may_cut("scan");
+    wide.may_leave_out("metric");
+    EXPECT_THAT(wide.fitted(60).text, HasSubstr(std::string(26, 's'))) << "not cut for a column that is left out";
 }
 
 TEST(Wrapped, BreaksLinesAtBlanks) {
