@@ -228,7 +228,7 @@ std::int64_t parse_id(const std::string& text) {
 struct Options {
     std::filesystem::path folder;
     std::string show, id;
-    std::optional<std::size_t> keep;
+    std::optional<std::int64_t> keep;
     bool json = false, prunes = false, dry_run = false;
     std::vector<std::string> command_line;
 };
@@ -236,10 +236,10 @@ struct Options {
 int prune_runs(const Options& options) {
     if (!options.show.empty())
         throw Error("--prune removes runs, and `show` prints one").hint("give one of them");
-    if (!options.keep || *options.keep == 0)
+    if (!options.keep || *options.keep < 1)
         throw Error("--prune needs the number of runs to keep, at least 1")
             .hint("scanmill runs DIR --prune --keep 30 keeps the newest 30 runs of every workflow and batch");
-    const Pruned pruned = prune(options.folder, *options.keep, options.dry_run, options.command_line, print_warning);
+    const Pruned pruned = prune(options.folder, static_cast<std::size_t>(*options.keep), options.dry_run, options.command_line, print_warning);
     if (options.json) {
         PrunedDocument document{pruned.runs, {}, pruned.bytes, pruned.records_before, pruned.records_after};
         for (const std::filesystem::path& file : pruned.files) document.files.push_back(file.string());

@@ -43,8 +43,8 @@ protected:
     }
     std::vector<int> runs() {
         std::vector<int> numbers;
-        for (const auto& run : nlohmann::json::parse(scanmill({"runs", "out", "--json"}).out)["runs"])
-            numbers.push_back(run["id"]);
+        const auto listed = nlohmann::json::parse(scanmill({"runs", "out", "--json"}).out);
+        for (const auto& run : listed["runs"]) numbers.push_back(run["id"]);
         return numbers;
     }
     bool exists(const std::string& file) const { return fs::exists(folder_ / "out" / file); }
@@ -103,7 +103,7 @@ TEST_F(Prune, AKeptRunThatLostItsFiles_IsWarnedOf_AndListed) {
     run("a.xyz");
     run("b.xyz");
     fs::remove(folder_ / "out/sub/b.ply");
-    EXPECT_THAT(scanmill({"runs", "out"}).out, HasSubstr("0 bytes, 1 gone"));
+    EXPECT_THAT(scanmill({"runs", "out"}).out, HasSubstr("0 B, 1 gone"));
     const ProgramResult result = prune("1");
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.err, HasSubstr("warning: run 2 stays, but 1 file that it wrote is gone"));

@@ -55,7 +55,7 @@ TEST_F(ReportCommand, TheFirstNight_IsNew) {
     const ProgramResult result = report();
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.out, AllOf(StartsWith("nightly: new\n1 cell: 1 new\n"), HasSubstr("no run was accepted yet"),
-                                  ContainsRegex("hausdorff  \\+1 %  default +1  0.5 mm  -  +0\n")));
+                                  ContainsRegex("hausdorff  \\+1 %  default +1  0.5 mm +- +0\n")));
 }
 
 TEST_F(ReportCommand, ARegression_TripsTheGate) {

@@ -165,7 +165,7 @@ Json document_of(const char* title) {
 
 Json run_schema() { return document_of<RunDocument>("scanmill run"); }
 Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR"); }
-Json runs_prune_schema() { return document_of<PrunedDocument>("scanmill runs DIR --prune"); }
+Json runs_prune_schema() { return document_of<PrunedDocument>("scanmill runs DIR, when it prunes"); }
 Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID"); }
 
 Json report_schema() {
