@@ -77,6 +77,7 @@ SCANMILL_FILTER() {
         .metric("points-beyond", Unit::count,
                 "Number of points of the input `points` that are farther than max-error from the result.",
                 smaller_is_better)
+        .simplifies(SimplifySpec{"mesh", "target-triangles", "max-error"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud* points = inputs.find<PointCloud>("points");
             return Outputs().set("mesh", decimate(inputs.get<TriangleMesh>("mesh"), points, params, context).mesh);

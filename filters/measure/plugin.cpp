@@ -70,7 +70,7 @@ Filter declaration() {
                            "The mesh with the vertex column `distance-to-truth`, negative inside a truth that is a "
                            "closed mesh.",
                            by_name)
-        .measures("mesh", "truth")
+        .measures(MeasureSpec{"mesh", "truth", "deviation", "distance-to-truth"})
         .adds({"distance-to-truth"})
         .param("samples", &P::samples,
                "Number of points spread over the area of each mesh. Of a cloud, all points are used.",

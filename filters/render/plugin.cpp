@@ -34,7 +34,10 @@ SCANMILL_FILTER() {
             "column `label`, only those with a label above 0.",
             optional)
         .in<TriangleMesh, PointCloud>(
-            "truth", "Sets the camera instead of the scene, so that pictures of different results match.", optional)
+            "truth",
+            "Sets the camera instead of the scene, so that pictures of different results match. It may have another "
+            "unit.",
+            optional)
         .out<Picture>("picture", "The picture; PNG files hold its caption as description.")
         .param("size", &P::size, "Columns and rows of the picture in pixels.", size(2), at_least(16), at_most(4096))
         .choices("camera", &P::camera,
@@ -83,7 +86,7 @@ SCANMILL_FILTER() {
                "mesh.")
         .param("creases", &P::creases,
                "Whether the mesh's sharp edges are drawn; without any, edges of more than 40 degrees.")
-        .draws("scene")
+        .draws(DrawSpec{"scene", "truth", "size", "colour", "scale"})
         .doubts({"the picture shows nothing"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("picture", render({drawable_at(inputs, "scene"), drawable_at(inputs, "over"),

@@ -76,6 +76,7 @@ void print_filter(const FilterSpec& spec) {
     if (spec.streams) fmt::print("  Large scans: {}\n", stream_text(spec));
     if (spec.measures) fmt::print("  Measures: {}\n", measures_text(*spec.measures));
     if (spec.draws) fmt::print("  Draws: {}\n", draws_text(*spec.draws));
+    if (spec.simplifies) fmt::print("  Simplifies: {}\n", simplifies_text(*spec.simplifies));
     if (!spec.adds.empty()) fmt::print("  Columns that it may add: {}\n", fmt::join(spec.adds, ", "));
     print_ports("Takes", spec.inputs);
     print_ports("Gives (the step's name alone refers to the first)", spec.outputs);

@@ -298,13 +298,24 @@ public:
     /// Declares that the filter compares the value at one input with the truth at another input. A batch applies such a
     /// filter to its results.
     Declare& measures(std::string value, std::string truth) {
-        declaration_.spec.measures = MeasureSpec{std::move(value), std::move(truth)};
+        return measures(MeasureSpec{std::move(value), std::move(truth)});
+    }
+    /// The same for a filter that also gives the mesh with its deviation.
+    Declare& measures(MeasureSpec spec) {
+        declaration_.spec.measures = std::move(spec);
         return *this;
     }
     /// Declares that the filter draws the value at this input; its first output is the picture. A step without `in`
     /// draws the last geometric value before it.
-    Declare& draws(std::string value) {
-        declaration_.spec.draws = DrawSpec{std::move(value)};
+    Declare& draws(std::string value) { return draws(DrawSpec{std::move(value)}); }
+    /// The same for a filter whose pictures can have a given camera, size or colours.
+    Declare& draws(DrawSpec spec) {
+        declaration_.spec.draws = std::move(spec);
+        return *this;
+    }
+    /// Declares that the filter makes a mesh of fewer triangles from the mesh at one input. Reports show such meshes.
+    Declare& simplifies(SimplifySpec spec) {
+        declaration_.spec.simplifies = std::move(spec);
         return *this;
     }
     /// `body(inputs, params, context)` returns Outputs.

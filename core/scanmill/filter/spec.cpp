@@ -107,6 +107,23 @@ void require_sound_measure(const FilterSpec& spec) {
         if (const PortSpec* input = spec.input(name); !input || input->optional || input->list)
             throw Error("filter {}: it measures with '{}', which must be a required input of one value", spec.name,
                         name);
+    const auto& [value, truth, deviation, column] = *spec.measures;
+    if (deviation.empty() && column.empty()) return;
+    if (const PortSpec* output = spec.output(deviation); !output || output->kind != kind_of<TriangleMesh>())
+        throw Error("filter {}: its deviation is '{}', which must be an output that is a mesh", spec.name, deviation);
+    if (std::ranges::find(spec.adds, column) == spec.adds.end())
+        throw Error("filter {}: the deviation is in the column '{}', which must be one that the filter adds", spec.name,
+                    column);
+}
+
+/// Throws Error unless `name` is empty or a parameter of this type. `size`: of a list; 0: one value.
+void require_parameter(const FilterSpec& spec, const std::string& name, ParameterType type, std::size_t size = 0) {
+    if (name.empty()) return;
+    const ParameterSpec* parameter = spec.parameter(name);
+    if (!parameter || parameter->type != type || parameter->list != (size > 0) || parameter->size.value_or(0) != size)
+        throw Error("filter {}: '{}' must be a parameter that takes {}", spec.name, name,
+                    size > 0 ? fmt::format("{} values of type {}", size, name_of(type))
+                             : fmt::format("a value of type {}", name_of(type)));
 }
 
 void require_sound_drawing(const FilterSpec& spec) {
@@ -116,6 +133,26 @@ void require_sound_drawing(const FilterSpec& spec) {
                     spec.draws->value);
     if (spec.outputs.front().kind != kind_of<Picture>())
         throw Error("filter {}: it draws '{}', so its first output must be a picture", spec.name, spec.draws->value);
+    if (const std::string& camera = spec.draws->camera; !camera.empty())
+        if (const PortSpec* port = spec.input(camera); !port || !port->optional || port->list)
+            throw Error("filter {}: the camera is set by '{}', which must be an optional input of one value", spec.name,
+                        camera);
+    require_parameter(spec, spec.draws->size, ParameterType::integer, 2);
+    require_parameter(spec, spec.draws->colour, ParameterType::text);
+    require_parameter(spec, spec.draws->scale, ParameterType::length, 2);
+}
+
+void require_sound_simplifying(const FilterSpec& spec) {
+    const auto& [value, triangles, max_error] = *spec.simplifies;
+    const PortSpec* input = spec.input(value);
+    if (!input || input->optional || input->list || !input->takes(kind_of<TriangleMesh>()))
+        throw Error("filter {}: it simplifies '{}', which must be a required input of one mesh", spec.name, value);
+    if (spec.outputs.front().kind != kind_of<TriangleMesh>())
+        throw Error("filter {}: it simplifies '{}', so its first output must be a mesh", spec.name, value);
+    if (triangles.empty() || max_error.empty())
+        throw Error("filter {}: it simplifies '{}', but does not name the parameters for it", spec.name, value);
+    require_parameter(spec, triangles, ParameterType::integer);
+    require_parameter(spec, max_error, ParameterType::length);
 }
 
 }  // namespace
@@ -164,6 +201,7 @@ void require_sound(const FilterSpec& spec) {
     if (spec.streams) require_sound_stream(spec);
     if (spec.measures) require_sound_measure(spec);
     if (spec.draws) require_sound_drawing(spec);
+    if (spec.simplifies) require_sound_simplifying(spec);
     for (const std::string& doubt : spec.doubts)
         if (doubt.empty() || doubt.ends_with('.'))
             throw Error("filter {}: the doubt '{}' is not a clause that can follow 'if'", spec.name, doubt);

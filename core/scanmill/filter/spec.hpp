@@ -80,20 +80,54 @@ constexpr auto fields(const StreamSpec*) { return std::tuple{field("given", &Str
 /// For filters that compare a value with its truth: the names of these two inputs.
 struct MeasureSpec {
     std::string value, truth;
+    /// The output that is the mesh with its deviation, and the vertex column of that mesh with the signed distance from
+    /// the truth. Both are empty for filters that give only numbers.
+    std::string deviation{}, column{};
 
     bool operator==(const MeasureSpec&) const = default;
 };
 constexpr auto fields(const MeasureSpec*) {
-    return std::tuple{field("value", &MeasureSpec::value), field("truth", &MeasureSpec::truth)};
+    using T = MeasureSpec;
+    return std::tuple{
+        field("value", &T::value), field("truth", &T::truth),
+        field("deviation", &T::deviation, "The output that is the mesh with its deviation from the truth.").optional(),
+        field("column", &T::column, "The vertex column of this output with the signed distance.").optional()};
 }
 
-/// For filters that draw a value: the name of this input. The first output is the picture.
+/// For filters that draw a value: the name of this input. The first output is the picture. The other members are empty
+/// if the filter has no such input or parameter.
 struct DrawSpec {
     std::string value;
+    std::string camera{};  ///< the input that sets the camera instead of the value
+    std::string size{};    ///< the parameter with the columns and rows of the picture
+    std::string colour{};  ///< the parameter that names the column that colours the value
+    std::string scale{};   ///< the parameter with the values at both ends of the colours
 
     bool operator==(const DrawSpec&) const = default;
 };
-constexpr auto fields(const DrawSpec*) { return std::tuple{field("value", &DrawSpec::value)}; }
+constexpr auto fields(const DrawSpec*) {
+    using T = DrawSpec;
+    return std::tuple{
+        field("value", &T::value),
+        field("camera", &T::camera, "The input that sets the camera instead of the value.").optional(),
+        field("size", &T::size, "The parameter with the columns and rows of the picture.").optional(),
+        field("colour", &T::colour, "The parameter that names the column that colours the value.").optional(),
+        field("scale", &T::scale, "The parameter with the values at both ends of the colours.").optional()};
+}
+
+/// For filters that make a mesh of fewer triangles: the name of the input, the parameter with the number of triangles
+/// to reach, and the parameter with the largest distance from the input. The first output is the mesh.
+struct SimplifySpec {
+    std::string value, triangles, max_error;
+
+    bool operator==(const SimplifySpec&) const = default;
+};
+constexpr auto fields(const SimplifySpec*) {
+    using T = SimplifySpec;
+    return std::tuple{
+        field("value", &T::value), field("triangles", &T::triangles, "The parameter with the number of triangles."),
+        field("max-error", &T::max_error, "The parameter with the largest distance from the input.")};
+}
 
 struct FilterSpec {
     std::string name;
@@ -109,6 +143,7 @@ struct FilterSpec {
     std::optional<StreamSpec> streams;
     std::optional<MeasureSpec> measures;
     std::optional<DrawSpec> draws;
+    std::optional<SimplifySpec> simplifies;
     /// Names of columns that the filter may add to its outputs. Formats that cannot hold these columns leave them out
     /// without a warning.
     std::vector<std::string> adds;
@@ -139,6 +174,8 @@ constexpr auto fields(const FilterSpec*) {
         field("measures", &T::measures, "The filter compares the value at one input with the truth at another.")
             .optional(),
         field("draws", &T::draws, "The filter draws the value at this input.").optional(),
+        field("simplifies", &T::simplifies, "The filter makes a mesh of fewer triangles from the mesh at this input.")
+            .optional(),
         field("adds", &T::adds, "Columns that the filter may add to its outputs.").optional(),
         field("doubts", &T::doubts, "When the filter doubts its result, each as a clause.").optional()};
 }
@@ -152,8 +189,11 @@ constexpr auto fields(const FilterSpec*) {
 /// - The remark on ties (filters with inputs) or on NaN (filters that take points or meshes) is missing.
 /// - The filter can be streamed, but its first input is not one cloud of points, or another input is required.
 /// - The stream needs a parameter that does not exist or that always has a value.
-/// - The filter compares a value with a truth, but lacks one of these two inputs.
-/// - The filter draws a value, but lacks this input, or its first output is not a picture.
+/// - The filter compares a value with a truth, but lacks one of these two inputs. Its deviation is not an output that is
+///   a mesh, or lacks a column among those that the filter adds.
+/// - The filter draws a value, but lacks this input, or its first output is not a picture. The camera is not an optional
+///   input, or a parameter has another type.
+/// - The filter simplifies a mesh, but lacks this input or one of the two parameters, or its first output is not a mesh.
 /// - A doubt is empty or ends with a full stop: pages write it after "if".
 void require_sound(const FilterSpec& spec);
 

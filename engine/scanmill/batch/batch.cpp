@@ -360,7 +360,7 @@ private:
     /// The workflow with an input for the truth and the measuring steps. `plain` is the plan of the workflow. Its
     /// outputs are measured unless BatchMeasure::of names other values.
     Workflow with_measurements(Workflow workflow, const Plan& plain, Diagnostics& diagnostics) const {
-        const auto& [value_port, truth_port] = *measuring_->measures;
+        const std::string &value_port = measuring_->measures->value, &truth_port = measuring_->measures->truth;
         const Position position = checked_.batch.measure->position;
         const PortSpec& truth = *measuring_->input(truth_port);
         WorkflowInput& input = workflow.inputs.emplace_back();

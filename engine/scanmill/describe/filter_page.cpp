@@ -91,6 +91,7 @@ std::string remarks(const FilterSpec& spec) {
     if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
     if (spec.measures) list += fmt::format("- Measures: {}\n", measures_text(*spec.measures));
     if (spec.draws) list += fmt::format("- Draws: {}\n", draws_text(*spec.draws));
+    if (spec.simplifies) list += fmt::format("- Simplifies: {}\n", simplifies_text(*spec.simplifies));
     if (!spec.adds.empty()) list += fmt::format("- Columns that it may add: `{}`\n", fmt::join(spec.adds, "`, `"));
     return "\n" + list;
 }
@@ -226,10 +227,14 @@ std::string stream_text(const FilterSpec& spec) {
 }
 
 std::string measures_text(const MeasureSpec& measures) {
+    const std::string deviation =
+        measures.deviation.empty() ? ""
+                                   : fmt::format(" `{}` has the signed distance from the truth in the column `{}`.",
+                                                 measures.deviation, measures.column);
     return fmt::format(
         "Compares the value at `{}` with the truth at `{}`; a batch applies the filter to the results of scans with a "
-        "truth.",
-        measures.value, measures.truth);
+        "truth.{}",
+        measures.value, measures.truth, deviation);
 }
 
 std::string draws_text(const DrawSpec& draws) {
@@ -238,6 +243,13 @@ std::string draws_text(const DrawSpec& draws) {
         "misses a "
         "condition of `expect`.",
         draws.value);
+}
+
+std::string simplifies_text(const SimplifySpec& simplifies) {
+    return fmt::format(
+        "Reduces the mesh at `{}` to the number of triangles in `{}`, within `{}`; reports show meshes reduced this "
+        "way.",
+        simplifies.value, simplifies.triangles, simplifies.max_error);
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

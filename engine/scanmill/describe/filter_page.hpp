@@ -36,5 +36,7 @@ std::string stream_text(const FilterSpec& spec);
 std::string measures_text(const MeasureSpec& measures);
 /// A text that names the input port of the drawn value.
 std::string draws_text(const DrawSpec& draws);
+/// A text that names the input port of the mesh to simplify and the two parameters.
+std::string simplifies_text(const SimplifySpec& simplifies);
 
 }  // namespace scanmill

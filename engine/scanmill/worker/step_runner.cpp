@@ -79,15 +79,32 @@ LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     return first ? frame_of(first->value)->unit : LengthUnit::unknown;
 }
 
+/// The unit of the value at the port; nullopt if there is no value, or one that is not geometric.
+std::optional<LengthUnit> unit_at(const std::vector<StepInput>& inputs, const std::string& port) {
+    const auto input = std::ranges::find(inputs, port, &StepInput::port);
+    const std::optional<Frame> frame = input == inputs.end() ? std::nullopt : frame_of(input->value);
+    return frame ? std::optional(frame->unit) : std::nullopt;
+}
+
+void convert_to(LengthUnit unit, const std::string& port, std::vector<StepInput>& inputs) {
+    for (StepInput& input : inputs)
+        if (input.port == port) input.value = in_unit(input.value, unit);
+}
+
+/// The inputs of a drawing step. If the input that sets the camera and the drawn value declare different units, the
+/// former is converted to the unit of the value.
+std::vector<StepInput> in_unit_of_drawn(std::vector<StepInput> inputs, const DrawSpec& ports) {
+    const LengthUnit unit = unit_at(inputs, ports.value).value_or(LengthUnit::unknown);
+    const LengthUnit of_camera = unit_at(inputs, ports.camera).value_or(LengthUnit::unknown);
+    if (unit != of_camera && unit != LengthUnit::unknown && of_camera != LengthUnit::unknown)
+        convert_to(unit, ports.camera, inputs);
+    return inputs;
+}
+
 /// The inputs of a measuring step, with the truth converted to the unit of the value. Throws Error if only one of the
 /// two declares a unit, because a wrong guess would give a wrong score.
 std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const MeasureSpec& ports) {
-    const auto unit_at = [&](const std::string& port) -> std::optional<LengthUnit> {
-        const auto input = std::ranges::find(inputs, port, &StepInput::port);
-        const std::optional<Frame> frame = input == inputs.end() ? std::nullopt : frame_of(input->value);
-        return frame ? std::optional(frame->unit) : std::nullopt;
-    };
-    const std::optional<LengthUnit> unit = unit_at(ports.value), of_truth = unit_at(ports.truth);
+    const std::optional<LengthUnit> unit = unit_at(inputs, ports.value), of_truth = unit_at(inputs, ports.truth);
     if (!unit || !of_truth || *unit == *of_truth) return inputs;
     const auto text = [](LengthUnit each) {
         return each == LengthUnit::unknown ? "has no unit" : fmt::format("is in {}", symbol(each));
@@ -100,8 +117,7 @@ std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const Mea
                       : "declare the truth's unit: `truth: {path: FILE, unit: mm}` in a batch, or `unit:` at the "
                         "workflow's input")
             .remedy(*unit == LengthUnit::unknown ? Remedy::declare_unit : Remedy::declare_truth_unit);
-    for (StepInput& input : inputs)
-        if (input.port == ports.truth) input.value = in_unit(input.value, *unit);
+    convert_to(*unit, ports.truth, inputs);
     return inputs;
 }
 
@@ -285,7 +301,9 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  NodeReport& report) {
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
         const std::vector<StepInput> comparable =
-            step.spec.measures ? in_unit_of_value(inputs, *step.spec.measures) : inputs;
+            step.spec.measures ? in_unit_of_value(inputs, *step.spec.measures)
+            : step.spec.draws  ? in_unit_of_drawn(inputs, *step.spec.draws)
+                               : inputs;
         const Value* first = first_geometric(comparable);
         const LengthUnit unit = common_unit(comparable);
         Inputs ports = rebased(comparable, first, unit, context);

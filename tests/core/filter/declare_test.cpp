@@ -145,9 +145,9 @@ TEST(Declare, ListOfChoices_HasItsChoicesAndDefaults) {
 
 TEST(Declare, Doubts_AreClauses) {
     const FilterDeclaration declared =
-        drawing_declaration()
-            .doubts({"the picture is empty"})
-            .run([](const Inputs&, const ViewParams&, Context&) { return Outputs(); });
+        drawing_declaration().doubts({"the picture is empty"}).run([](const Inputs&, const ViewParams&, Context&) {
+            return Outputs();
+        });
     FilterSpec spec = declared.spec;
     EXPECT_THAT(spec.doubts, ElementsAre("the picture is empty"));
     EXPECT_NO_THROW(require_sound(spec));
@@ -194,6 +194,89 @@ TEST(Declare, DrawingFilterWhoseFirstOutputIsNotAPicture_IsUnsound) {
     FilterSpec spec = FilterDeclaration(drawing_declaration()).spec;
     std::swap(spec.outputs[0], spec.outputs[1]);
     EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("first output must be a picture"));
+}
+
+struct SmallPictureParams {
+    std::vector<u32> size{80, 60};
+    std::optional<std::string> colour;
+    std::optional<std::vector<Length>> scale;
+    u64 triangles = 0;
+    Length max_error = Length::percent_of_diagonal(1);
+};
+
+/// A filter that draws, measures and simplifies.
+FilterSpec spec_for_previews() {
+    using P = SmallPictureParams;
+    return FilterDeclaration(Declare<P>("all-in-one", 1)
+                                 .summary("Draws, measures and simplifies.")
+                                 .source("Hand-made")
+                                 .ties("There are none.")
+                                 .not_finite(help)
+                                 .in<TriangleMesh>("mesh", help)
+                                 .in<TriangleMesh, PointCloud>("camera", help, optional)
+                                 .in<TriangleMesh>("truth", help)
+                                 .out<Picture>("picture", help)
+                                 .out<TriangleMesh>("deviation", help)
+                                 .adds({"distance"})
+                                 .param("size", &P::size, help, size(2))
+                                 .param("colour", &P::colour, help, word("none"))
+                                 .param("scale", &P::scale, help, word("auto"), size(2))
+                                 .param("triangles", &P::triangles, help)
+                                 .param("max-error", &P::max_error, help)
+                                 .draws(DrawSpec{"mesh", "camera", "size", "colour", "scale"})
+                                 .measures(MeasureSpec{"mesh", "truth", "deviation", "distance"}))
+        .spec;
+}
+
+TEST(Declare, PartsForPreviews_AreInTheSpecification) {
+    FilterSpec spec = spec_for_previews();
+    EXPECT_NO_THROW(require_sound(spec));
+    EXPECT_EQ(spec.draws->camera, "camera");
+    EXPECT_EQ(spec.measures->column, "distance");
+    std::swap(spec.outputs[0], spec.outputs[1]);
+    spec.draws.reset();
+    spec.simplifies = SimplifySpec{"mesh", "triangles", "max-error"};
+    EXPECT_NO_THROW(require_sound(spec));
+}
+
+TEST(Declare, DrawingFilterWithoutItsCameraOrParameters_IsUnsound) {
+    const auto refusal = [](std::string DrawSpec::*member, const std::string& name) {
+        FilterSpec spec = spec_for_previews();
+        (*spec.draws).*member = name;
+        return sentence_of([&] { require_sound(spec); });
+    };
+    for (const char* camera : {"kamera", "mesh"})
+        EXPECT_THAT(refusal(&DrawSpec::camera, camera), testing::HasSubstr("must be an optional input of one value"));
+    EXPECT_THAT(refusal(&DrawSpec::size, "triangles"), testing::HasSubstr("2 values of type integer"));
+    EXPECT_THAT(refusal(&DrawSpec::colour, "size"), testing::HasSubstr("a value of type text"));
+    EXPECT_THAT(refusal(&DrawSpec::scale, "none"), testing::HasSubstr("2 values of type length"));
+}
+
+TEST(Declare, DeviationThatIsNoMeshOrHasNoColumn_IsUnsound) {
+    FilterSpec spec = spec_for_previews();
+    spec.measures->deviation = "picture";
+    EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("'picture', which must be an output"));
+    spec = spec_for_previews();
+    spec.measures->column = "length";
+    EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("column 'length'"));
+}
+
+TEST(Declare, SimplifyingFilterWithoutItsInputParametersOrMesh_IsUnsound) {
+    const auto refusal = [](const SimplifySpec& simplifies) {
+        FilterSpec spec = spec_for_previews();
+        std::swap(spec.outputs[0], spec.outputs[1]);
+        spec.draws.reset();
+        spec.simplifies = simplifies;
+        return sentence_of([&] { require_sound(spec); });
+    };
+    EXPECT_THAT(refusal({"camera", "triangles", "max-error"}), testing::HasSubstr("a required input of one mesh"));
+    EXPECT_THAT(refusal({"mesh", "max-error", "max-error"}), testing::HasSubstr("a value of type integer"));
+    EXPECT_THAT(refusal({"mesh", "triangles", "size"}), testing::HasSubstr("a value of type length"));
+    EXPECT_THAT(refusal({"mesh", "", "max-error"}), testing::HasSubstr("does not name the parameters"));
+    FilterSpec spec = spec_for_previews();
+    spec.draws.reset();
+    spec.simplifies = SimplifySpec{"mesh", "triangles", "max-error"};
+    EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("first output must be a mesh"));
 }
 
 }  // namespace

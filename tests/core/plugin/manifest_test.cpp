@@ -125,6 +125,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.outputs[0].by_name = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.measures = MeasureSpec{"mesh", "truth"}; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.draws = DrawSpec{"plain"}; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.simplifies.emplace(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.adds.push_back("bin-size"); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
@@ -150,6 +151,19 @@ TEST(Manifest, DrawingFilter_ReadsBackEqual) {
     Manifest manifest = everything();
     manifest.spec.outputs = {{"picture", kind_of<Picture>(), "Shows the value.", false, false}};
     manifest.spec.draws = DrawSpec{"either"};
+    ASSERT_NO_THROW(require_sound(manifest.spec));
+    EXPECT_EQ(parse_manifest(to_json_text(manifest)), manifest);
+}
+
+TEST(Manifest, FilterForPreviews_ReadsBackEqual) {
+    Manifest manifest = everything();
+    std::swap(manifest.spec.outputs[0], manifest.spec.outputs[1]);
+    manifest.spec.inputs[1].list = false;
+    manifest.spec.adds = {"distance"};
+    manifest.spec.parameters[1].low = manifest.spec.parameters[1].high = {};
+    manifest.spec.parameters.push_back(parameter("largest", ParameterType::length, ParameterScalar(Length(1))));
+    manifest.spec.measures = MeasureSpec{"plain", "some", manifest.spec.outputs[0].name, "distance"};
+    manifest.spec.simplifies = SimplifySpec{"some", "count", "largest"};
     ASSERT_NO_THROW(require_sound(manifest.spec));
     EXPECT_EQ(parse_manifest(to_json_text(manifest)), manifest);
 }
