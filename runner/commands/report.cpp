@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
@@ -13,6 +14,8 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
+#include "scanmill/io/atomic_file.hpp"
+#include "scanmill/session/report_page.hpp"
 
 namespace scanmill::runner {
 
@@ -23,6 +26,7 @@ struct Options {
     std::string against, who, why, metric, format = "text", table;
     std::optional<std::int64_t> run;
     std::string acknowledge;
+    std::filesystem::path html;
     bool accept = false, revoke = false, strict = false, json = false;
 };
 
@@ -103,6 +107,30 @@ void require_metric(const std::string& metric, const Comparison& comparison) {
             .hint("there are " + enumerated(names));
 }
 
+/// Writes the report page, and prints its path. Returns the exit code of the comparison.
+int write_page(const Options& options, const RecordedRun& which, const std::optional<RecordedRun>& against) {
+    std::string page = page_template();
+    FilterLibrary library = open_library();
+    PreviewSettings settings;
+    settings.jobs = std::max(1u, std::thread::hardware_concurrency());
+    settings.worker_command = {"/proc/self/exe", "worker"};
+    const PageDocument document =
+        page_document(which, against, reproducing_command, library, settings, warning_printer());
+    std::error_code trouble;
+    if (options.html.has_parent_path()) std::filesystem::create_directories(options.html.parent_path(), trouble);
+    try {
+        AtomicFile file(options.html);
+        file.write(page_with(std::move(page), document));
+        file.commit();
+    } catch (const Error& error) {
+        throw error.reworded(fmt::format("'{}' {}", options.html.string(), error.sentence()));
+    }
+    fmt::print("{}: {}; the page is {}\n", printable_line(document.batch), name_of(document.verdict),
+               printable_line(options.html.string()));
+    for (const std::string& note : document.notes) print_warning(note);
+    return exit_code_of(compare_recorded(which, against, {}), options.strict);
+}
+
 int report(const Options& options) {
     if (options.accept || options.revoke || !options.acknowledge.empty()) {
         require_reason(options);
@@ -116,6 +144,7 @@ int report(const Options& options) {
         return done;
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
+    if (!options.html.empty()) return write_page(options, which, against);
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
     if (!options.metric.empty()) require_metric(options.metric, comparison);
     if (options.json)
@@ -162,14 +191,18 @@ void add_report(CLI::App& app, Action& chosen) {
             .add_option("--table", options.table,
                         "Print all numbers of all cells as csv, for all ended runs or for --run, without a verdict")
             ->check(CLI::IsMember({"csv"}));
+    CLI::Option* html = command.add_option(
+        "--html", options.html,
+        "Write the report as one HTML file with pictures, which opens from disk. Previews are kept in DIR/previews");
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");
     format->excludes(json);
+    for (CLI::Option* other : {metric, format, table, json}) html->excludes(other);
     for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
     accept->excludes(revoke);
     acknowledge->excludes(accept)->excludes(revoke);
     for (CLI::Option* action : {accept, revoke, acknowledge})
-        for (CLI::Option* other : {against, metric, format, table, json}) action->excludes(other);
+        for (CLI::Option* other : {against, metric, format, table, json, html}) action->excludes(other);
 }
 
 }  // namespace scanmill::runner

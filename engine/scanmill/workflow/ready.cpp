@@ -15,14 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folders that may hold the ready workflows: library folders have one level, or two as in lib/x86_64-linux-gnu.
-std::vector<fs::path> ready_folders() {
-    const fs::path library = core_library_file().parent_path();
-    std::vector<fs::path> folders;
-    for (const fs::path& prefix : {library.parent_path(), library.parent_path().parent_path()})
-        folders.push_back(prefix / "share/scanmill/workflows");
-    return folders;
-}
+std::vector<fs::path> ready_folders() { return shared_places("workflows"); }
 
 /// The path of the ready workflow or batch; empty if there is none of this name.
 std::string ready_file(const std::string& name) {
@@ -36,6 +29,15 @@ std::string ready_file(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<fs::path> shared_places(const std::string& name) {
+    // Library folders have one level, or two as in lib/x86_64-linux-gnu.
+    const fs::path library = core_library_file().parent_path();
+    std::vector<fs::path> places;
+    for (const fs::path& prefix : {library.parent_path(), library.parent_path().parent_path()})
+        places.push_back(prefix / "share/scanmill" / name);
+    return places;
+}
 
 std::vector<std::string> ready_names() {
     std::set<std::string> names;

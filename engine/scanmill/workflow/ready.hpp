@@ -10,6 +10,9 @@
 
 namespace scanmill {
 
+/// The folders that may hold `name` of what is installed in share/scanmill, such as "workflows".
+std::vector<std::filesystem::path> shared_places(const std::string& name);
+
 /// The names of the ready workflows and batches that are installed with the program, sorted.
 std::vector<std::string> ready_names();
 
