@@ -190,13 +190,11 @@ constexpr auto fields(const FilterSpec*) {
 /// - The filter can be streamed, but its first input is not one cloud of points, or another input is required.
 /// - The stream needs a parameter that does not exist or that always has a value.
 /// - The filter compares a value with a truth, but lacks one of these two inputs. Its deviation is not an output that
-/// is
-///   a mesh, or lacks a column among those that the filter adds.
+///   is a mesh, or lacks a column among those that the filter adds.
 /// - The filter draws a value, but lacks this input, or its first output is not a picture. The camera is not an
-/// optional
-///   input, or a parameter has another type.
+///   optional input, or a parameter has another type.
 /// - The filter simplifies a mesh, but lacks this input or one of the two parameters, or its first output is not a
-/// mesh.
+///   mesh.
 /// - A doubt is empty or ends with a full stop: pages write it after "if".
 void require_sound(const FilterSpec& spec);
 
