@@ -99,9 +99,9 @@ constexpr auto fields(const MeasureSpec*) {
 struct DrawSpec {
     std::string value;
     std::string camera{};  ///< the input that sets the camera instead of the value
-    std::string size{};    ///< the parameter with the columns and rows of the picture
+    std::string size{};  ///< the parameter with the columns and rows of the picture
     std::string colour{};  ///< the parameter that names the column that colours the value
-    std::string scale{};   ///< the parameter with the values at both ends of the colours
+    std::string scale{};  ///< the parameter with the values at both ends of the colours
 
     bool operator==(const DrawSpec&) const = default;
 };
@@ -124,9 +124,9 @@ struct SimplifySpec {
 };
 constexpr auto fields(const SimplifySpec*) {
     using T = SimplifySpec;
-    return std::tuple{
-        field("value", &T::value), field("triangles", &T::triangles, "The parameter with the number of triangles."),
-        field("max-error", &T::max_error, "The parameter with the largest distance from the input.")};
+    return std::tuple{field("value", &T::value),
+                      field("triangles", &T::triangles, "The parameter with the number of triangles."),
+                      field("max-error", &T::max_error, "The parameter with the largest distance from the input.")};
 }
 
 struct FilterSpec {
@@ -189,11 +189,12 @@ constexpr auto fields(const FilterSpec*) {
 /// - The remark on ties (filters with inputs) or on NaN (filters that take points or meshes) is missing.
 /// - The filter can be streamed, but its first input is not one cloud of points, or another input is required.
 /// - The stream needs a parameter that does not exist or that always has a value.
-/// - The filter compares a value with a truth, but lacks one of these two inputs. Its deviation is not an output that is
-///   a mesh, or lacks a column among those that the filter adds.
-/// - The filter draws a value, but lacks this input, or its first output is not a picture. The camera is not an optional
-///   input, or a parameter has another type.
-/// - The filter simplifies a mesh, but lacks this input or one of the two parameters, or its first output is not a mesh.
+/// - The filter compares a value with a truth, but lacks one of these two inputs. Its deviation is not an output that
+///   is a mesh, or lacks a column among those that the filter adds.
+/// - The filter draws a value, but lacks this input, or its first output is not a picture. The camera is not an
+///   optional input, or a parameter has another type.
+/// - The filter simplifies a mesh, but lacks this input or one of the two parameters, or its first output is not a
+///   mesh.
 /// - A doubt is empty or ends with a full stop: pages write it after "if".
 void require_sound(const FilterSpec& spec);
 

@@ -205,9 +205,9 @@ std::string example_workflow(const FilterSpec& spec, const FilterLibrary& librar
 }
 
 std::string filter_reference(const FilterSpec& spec) {
-    const std::string parts = ports_table("Takes", "port", spec.inputs) +
-                              ports_table("Gives", "port", spec.outputs) + parameters_table(spec.parameters) +
-                              metrics_table(spec.metrics) + doubts_list(spec) + "\n## Details\n" + remarks(spec);
+    const std::string parts = ports_table("Takes", "port", spec.inputs) + ports_table("Gives", "port", spec.outputs) +
+                              parameters_table(spec.parameters) + metrics_table(spec.metrics) + doubts_list(spec) +
+                              "\n## Details\n" + remarks(spec);
     return parts + fmt::format("- Source: {}.\n- Version {}.\n", spec.source, spec.version);
 }
 
@@ -227,10 +227,10 @@ std::string stream_text(const FilterSpec& spec) {
 }
 
 std::string measures_text(const MeasureSpec& measures) {
-    const std::string deviation =
-        measures.deviation.empty() ? ""
-                                   : fmt::format(" `{}` has the signed distance from the truth in the column `{}`.",
-                                                 measures.deviation, measures.column);
+    const std::string deviation = measures.deviation.empty()
+                                      ? ""
+                                      : fmt::format(" `{}` has the signed distance from the truth in the column `{}`.",
+                                                    measures.deviation, measures.column);
     return fmt::format(
         "Compares the value at `{}` with the truth at `{}`; a batch applies the filter to the results of scans with a "
         "truth.{}",

@@ -83,6 +83,7 @@ struct Item {
     std::string truth;      ///< identifies truth and units; empty: no deviation is measured
     bool is_made = false;   ///< the folder has the preview
     bool is_usable = true;  ///< the file has the content that was recorded
+    bool is_measured = false;  ///< the mesh of the preview has its deviation
     bool is_stored = true;  ///< the note is written: the next call would come to the same result
     std::string lasting;    ///< reasons that hold until the key changes; they are part of the note
 
@@ -178,17 +179,20 @@ private:
 
     // Keys and existing previews.
 
-    /// The hash of the file's bytes; empty, with a reason, if it cannot be read.
-    std::string content(const fs::path& path, Item& item) {
-        const auto [found, is_new] = contents_.try_emplace(path.string());
+    /// The hash of the file's bytes, with the number of the view if `name` is that of a view; empty, with a reason, if
+    /// it cannot be read.
+    std::string content(const fs::path& name, Item& item) {
+        const FileView view = file_view(name);
+        const auto [found, is_new] = contents_.try_emplace(view.file.string());
         if (is_new) try {
-                if (const std::optional<Error> other = why_no_file(path)) throw *other;
-                found->second.first = content_hash(path);
+                if (const std::optional<Error> other = why_no_file(view.file)) throw *other;
+                found->second.first = content_hash(view.file);
             } catch (const Error& error) {
                 found->second.second = error.sentence();
             }
-        if (found->second.first.empty()) item.lack(found->second.second);
-        return found->second.first;
+        if (!found->second.first.empty()) return fmt::format("{} {}", found->second.first, view.view);
+        item.lack(found->second.second);
+        return {};
     }
 
     void add(const PreviewWish& wish) {
@@ -198,7 +202,11 @@ private:
         const FileView view = file_view(wish.file);
         KeyBuilder key;
         key.field("scheme", preview_scheme).field("builds", builds_);
-        if (own.sha256.empty() && !content(view.file, item).empty()) own.sha256 = sha256_of(view.file);
+        if (own.sha256.empty()) try {
+                own.sha256 = sha256_of(view.file);
+            } catch (const Error&) {
+                // check_file() gives the reason.
+            }
         key.field("file", own.sha256)
             .field("extension", extension_of(view.file))
             .field("view", std::to_string(view.view))
@@ -207,7 +215,7 @@ private:
         const bool may_measure = own.kind == kind_of<TriangleMesh>() && makers_.measures && makers_.simplifies;
         if (!may_measure) own.truth_file.clear();
         if (!own.truth_file.empty()) {
-            const std::string truth = content(file_view(own.truth_file).file, item);
+            const std::string truth = content(own.truth_file, item);
             if (truth.empty())
                 own.truth_file.clear();
             else
@@ -216,7 +224,7 @@ private:
         }
         if (!makers_.draws || makers_.draws->draws->camera.empty()) own.camera_file.clear();
         if (!own.camera_file.empty()) {
-            const std::string camera = content(file_view(own.camera_file).file, item);
+            const std::string camera = content(own.camera_file, item);
             if (camera.empty()) own.camera_file.clear();
             key.field("camera", camera).field("camera unit", symbol(unit_of_camera(item)));
         }
@@ -255,6 +263,7 @@ private:
         set(&Preview::picture, picture_end);
         set(&Preview::deviation, deviation_end);
         set(&Preview::mesh, mesh_end);
+        item.is_measured = !item.preview.deviation.empty();  // a picture that failed is not tried again
     }
 
     /// Checks that the file has the content that was recorded.
@@ -357,6 +366,7 @@ private:
         workers.command = settings_.worker_command;
         workers.count = jobs;
         WorkerProcesses processes(std::move(workers));
+        processes.start_early();  // throws an Error that does not count as a failure of the files
         return scanmill::run(library_, graph, processes, running);
     }
 
@@ -397,6 +407,7 @@ private:
         input.name = std::move(source.name);
         input.kind = source.kind;
         input.also = std::move(source.also);
+        input.by_name = true;
     }
 
     using Texts = std::vector<std::pair<std::string, std::string>>;
@@ -498,9 +509,11 @@ private:
         light.frame = mesh->frame;
         light.positions = mesh->positions;
         light.triangles = mesh->triangles;
-        if (is_measured)
-            if (const Column* column = mesh->vertex_columns.find(makers_.measures->measures->column))
-                light.vertex_columns.add(*column);
+        if (const Column* column =
+                is_measured ? mesh->vertex_columns.find(makers_.measures->measures->column) : nullptr) {
+            light.vertex_columns.add(*column);
+            item.is_measured = true;
+        }
         const fs::path target = this->file(item, mesh_end);
         write_file(target, Value(std::make_shared<const TriangleMesh>(without_unused_vertices(light))));
         item.preview.mesh = target;
@@ -526,9 +539,7 @@ private:
             return to_draw;
         std::map<std::string, std::vector<Item*>> items_of_truth;
         for (Item* item : chunk)
-            if (!item->truth.empty() && !item->preview.mesh.empty() &&
-                !(item->is_made && item->preview.deviation.empty()))
-                items_of_truth[item->truth].push_back(item);
+            if (item->is_measured && !item->preview.mesh.empty()) items_of_truth[item->truth].push_back(item);
         for (const auto& [truth, items] : items_of_truth) {
             const auto drawn = std::ranges::find_if(items, [](const Item* item) { return item->preview.scale > 0; });
             const double scale = drawn != items.end() ? (*drawn)->preview.scale : scale_of(items);

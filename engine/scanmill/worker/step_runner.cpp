@@ -300,10 +300,9 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report) {
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
-        const std::vector<StepInput> comparable =
-            step.spec.measures ? in_unit_of_value(inputs, *step.spec.measures)
-            : step.spec.draws  ? in_unit_of_drawn(inputs, *step.spec.draws)
-                               : inputs;
+        const std::vector<StepInput> comparable = step.spec.measures ? in_unit_of_value(inputs, *step.spec.measures)
+                                                  : step.spec.draws  ? in_unit_of_drawn(inputs, *step.spec.draws)
+                                                                     : inputs;
         const Value* first = first_geometric(comparable);
         const LengthUnit unit = common_unit(comparable);
         Inputs ports = rebased(comparable, first, unit, context);
