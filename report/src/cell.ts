@@ -23,6 +23,7 @@ export function cellDetails(report: Report, cell: Cell, views: HTMLElement | nul
     const onPaper = views === null;
     return element("div", { class: "cell" },
         texts.findings(cell),
+        cell.outcome === "failed" && part("End of the log", texts.log(cell)),
         part("Changes", changes.length > 0 && changeTable(changes, "Changes since the accepted run")),
         part("Pictures", ...pictures(report, cell, onPaper)),
         part("Deviations", ...deviations(report, cell)),
@@ -30,7 +31,7 @@ export function cellDetails(report: Report, cell: Cell, views: HTMLElement | nul
         part("Values", texts.values(report, cell)),
         part("Steps", waterfall(cell)),
         part("Output files", texts.outputs(cell)),
-        part("End of the log", texts.log(cell)),
+        cell.outcome !== "failed" && part("End of the log", texts.log(cell)),
         part("To reproduce", texts.command(cell)));
 }
 
@@ -72,14 +73,14 @@ function pictures(report: Report, cell: Cell, onPaper: boolean): Child[] {
     const all = [...ofScan, ...results];
     const swiped = [...all, ...maps];
     if (swiped.length === 0) return [];
-    const own = Math.max(0, swiped.findIndex((picture) => picture.cell === cell));
+    const own = swiped.findIndex((picture) => picture.cell === cell);
     const accepted = swiped.findIndex((picture) => picture.caption.endsWith("accepted run"));
-    const other = accepted >= 0 ? accepted : own === 0 ? 1 : 0;
+    const [left, right] = own < 0 ? [0, 1] : [accepted >= 0 ? accepted : own === 0 ? 1 : 0, own];
     const hasTruth = ofScan.some((picture) => picture.caption === "Truth");
     return [
         !hasTruth && element("p", { class: "quiet" }, "This scan has no truth."),
         strip(all, cell),
-        !onPaper && swiped.length > 1 && [element("h4", null, "Compare two pictures"), swipe(swiped, other, own)],
+        !onPaper && swiped.length > 1 && [element("h4", null, "Compare two pictures"), swipe(swiped, left, right)],
     ];
 }
 

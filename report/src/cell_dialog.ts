@@ -27,6 +27,10 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
     let drawn: Views | null = null;
     let opener: string | null = null;
 
+    function trendLink(of: Cell): HTMLElement | null {
+        return report.trendsOf(of).length > 0 && report.data.runs.length > 1 ? element("p", null, element("a", { href: `#trend-${of.id}` }, "Trends of this scan")) : null;
+    }
+
     function empty(): void {
         drawn?.dispose();
         drawn = null;
@@ -53,7 +57,7 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
             const place = element("div", { class: "views-place" });
             const meshes = meshesOf(report, next);
             replaceChildren(title, cellHeading(report, next));
-            replaceChildren(content, cellLine(next), variantLinks(report, next), cellDetails(report, next, meshes.length > 0 ? place : element("p", { class: "quiet" }, "No mesh of this scan is in the page.")));
+            replaceChildren(content, cellLine(next), trendLink(next), variantLinks(report, next), cellDetails(report, next, meshes.length > 0 ? place : element("p", { class: "quiet" }, "No mesh of this scan is in the page.")));
             if (!root.open) root.showModal();
             root.scrollTop = 0;
             title.focus();
@@ -62,7 +66,7 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
                 if (cell !== next || drawn) return;
                 drawn = views(meshes, report.deviationScale(next));
                 place.replaceChildren(drawn.root);
-                if (drawn.root.tagName === "UL") place.prepend(element("p", { class: "quiet" }, "Drag or use the arrow keys to turn; all views turn together. Choose a view to zoom with the wheel."));
+                if (drawn.root.tagName === "DIV") place.prepend(element("p", { class: "quiet" }, "Drag or use the arrow keys to turn; all views turn together. Choose a view to zoom with the wheel."));
             });
         },
         close() {

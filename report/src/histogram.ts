@@ -25,7 +25,7 @@ export function histogram(data: Histogram, unit: string, title: string, top: num
     return element("figure", { class: isCurrent ? "histogram current" : "histogram" },
         svgElement("svg", { viewBox: `0 0 ${width} ${height + 1}`, preserveAspectRatio: "none", role: "img", "aria-label": `Histogram of ${title}. ${description(data, unit)}` },
             band, bars, limits, svgElement("line", { class: "base", x1: 0, x2: width, y1: height + 0.5, y2: height + 0.5 })),
-        element("figcaption", null, title, element("span", { class: "quiet" }, ` ${description(data, unit)}`)));
+        element("figcaption", null, title));
 }
 
 function description(data: Histogram, unit: string): string {

@@ -43,10 +43,10 @@ function build(report: Report): void {
             element("nav", { "aria-label": "Sections" },
                 element("a", { href: "#summary" }, "Summary"),
                 sections.map((section) => element("a", { href: `#${section.id}` }, section.querySelector("h2")?.textContent)))),
-        element("main", null, summary(report, table.choose), sections, preparePaper(report, dialog.shown, () => chart?.redraw())),
+        element("main", null, summary(report, table.choose), sections, preparePaper(report, dialog.shown, (onPaper) => chart?.redraw(onPaper))),
         element("footer", { class: "bottom" }, element("p", { class: "quiet" }, `Made by Scanmill from the records in ${report.data.folder}.`)),
         dialog.root);
     addEventListener("hashchange", follow);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => chart?.redraw());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => chart?.redraw(false));
     follow();
 }

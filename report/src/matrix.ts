@@ -107,7 +107,9 @@ export function matrix(report: Report): Matrix {
         const cell = (title: string, column: number | null) => {
             const isActive = isSorted && order.column === column;
             const direction = order.descending ? "descending" : "ascending";
-            return element("th", { scope: "col", "aria-sort": isActive ? direction : "none" },
+            // Equal widths for the variants, as far as they fit.
+            const width: Record<string, string> = column === null ? {} : { width: `${Math.min(14, 72 / report.columns.length)}%` };
+            return element("th", { scope: "col", style: width, "aria-sort": isActive ? direction : "none" },
                 element("button", { type: "button", class: "sort", "data-column": column ?? "name", onclick: () => sortBy(column) },
                     title, element("span", { "aria-hidden": "true", class: "arrow" }, isActive ? (order.descending ? "↓" : "↑") : "↕")));
         };

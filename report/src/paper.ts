@@ -10,17 +10,14 @@ import { troubles } from "./verdict.ts";
 
 const mostCells = 40;
 
-/// `open` is the cell of the open dialog; `redraw` draws canvases in the colours of paper or of the screen.
-export function preparePaper(report: Report, open: () => Cell | null, redraw: () => void): HTMLElement {
+/// `open` is the cell of the open dialog; `redraw` draws charts for paper or for the screen.
+export function preparePaper(report: Report, open: () => Cell | null, redraw: (onPaper: boolean) => void): HTMLElement {
     const root = element("section", { class: "paper-only", "aria-label": "Details for paper" });
-    let opened: HTMLDetailsElement[] = [];
 
     function before(): void {
         const one = open();
         document.documentElement.classList.add("paper");
         document.documentElement.classList.toggle("one-cell", one !== null);
-        opened = [...document.querySelectorAll<HTMLDetailsElement>("main details:not([open])")];
-        for (const details of opened) details.open = true;
         const cells = one ? [one] : report.data.cells.filter((cell) => troubles.includes(cell.verdict));
         cells.sort((a, b) => troubles.indexOf(a.verdict) - troubles.indexOf(b.verdict));
         const shown = cells.slice(0, mostCells);
@@ -28,15 +25,13 @@ export function preparePaper(report: Report, open: () => Cell | null, redraw: ()
             !one && shown.length > 0 && element("h2", null, "Details"),
             cells.length > shown.length && element("p", null, `The first ${shown.length} of ${format.count(cells.length)} cells that are failed, missing, regressed or doubtful; open the others in the page to print them.`),
             shown.map((cell) => element("article", { class: "paper-cell" }, element("h3", { class: "paper-title" }, cellHeading(report, cell)), cellLine(cell), cellDetails(report, cell, null))));
-        redraw();
+        redraw(true);
     }
 
     function after(): void {
         document.documentElement.classList.remove("paper", "one-cell");
-        for (const details of opened) details.open = false;
-        opened = [];
         root.replaceChildren();
-        redraw();
+        redraw(false);
     }
 
     addEventListener("beforeprint", before);

@@ -11,13 +11,15 @@ import type { Trend } from "./data.ts";
 const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a7300", "#56b4e9", "#7a7a7a"];
 const dashes = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [14, 4], [1, 5]];
 const height = 320;
+/// Fits on A4 and on Letter, in CSS pixels.
+const sheetWidth = 660;
 
 export interface Trends {
     readonly section: HTMLElement;
     /// Shows the trends of a scan.
     choose(scan: string): void;
-    /// Draws again, after a change of the colours of the page.
-    redraw(): void;
+    /// Draws again with the present colours, in the width of a sheet or of the screen.
+    redraw(onPaper: boolean): void;
 }
 
 interface Line {
@@ -41,7 +43,6 @@ export function trends(report: Report): Trends | null {
     const numbers = element("div", { class: "scroll tall", role: "region", "aria-label": "Numbers of the trend", tabindex: 0 });
     const details = element("details", null, element("summary", null, "Numbers"), numbers);
     let plot: uPlot | null = null;
-    let shown: Row | null = null;
 
     function draw(): void {
         const row = byScan.get(scanInput.value);
@@ -49,7 +50,6 @@ export function trends(report: Report): Trends | null {
             replaceChildren(note, `No trend for “${scanInput.value}”.`);
             return;
         }
-        shown = row;
         const lines = linesOf(report, row, metricSelect.value);
         const accepted = data.runs.filter((run) => run.accepted).map((run) => run.id);
         replaceChildren(note, `${metricSelect.value} over ${format.counted(data.runs.length, "run")}. `,
@@ -62,7 +62,7 @@ export function trends(report: Report): Trends | null {
     }
 
     new ResizeObserver(() => {
-        if (plot && stage.clientWidth > 0 && stage.clientWidth !== plot.width) plot.setSize({ width: stage.clientWidth, height });
+        if (plot && !document.documentElement.classList.contains("paper") && stage.clientWidth > 0 && stage.clientWidth !== plot.width) plot.setSize({ width: stage.clientWidth, height });
     }).observe(stage);
 
     scanInput.value = (rows.find((row) => row.cells.some((cell) => cell?.verdict === "regressed")) ?? rows[0]!).scan;
@@ -87,8 +87,8 @@ export function trends(report: Report): Trends | null {
             section.scrollIntoView();
             metricSelect.focus({ preventScroll: true });
         },
-        redraw() {
-            if (shown) plot?.redraw(false);
+        redraw(onPaper) {
+            plot?.setSize({ width: onPaper ? sheetWidth : stage.clientWidth, height });
         },
     };
 }
@@ -112,10 +112,10 @@ function options(report: Report, lines: Line[], width: number): uPlot.Options {
         width,
         height,
         scales: { x: { time: false, range: () => [-0.5, runs.length - 0.5] } },
-        legend: { live: true },
+        legend: { live: true, markers: { width: 3, dash: (_plot, index) => ((dashes[(index - 1) % dashes.length] ?? []).length === 0 ? "solid" : "dashed") } },
         cursor: { points: { size: 8 } },
         axes: [
-            { ...axis, label: "run", labelSize: 22, labelFont: axis.font, space: 36, incrs: [1, 2, 5, 10, 20, 50, 100], values: (_plot, splits) => splits.map((split) => (Number.isInteger(split) ? label(split) : "")) },
+            { ...axis, label: "run", labelSize: 18, labelGap: -4, labelFont: axis.font, size: 32, space: 36, incrs: [1, 2, 5, 10, 20, 50, 100], values: (_plot, splits) => splits.map((split) => (Number.isInteger(split) ? label(split) : "")) },
             { ...axis, size: 64, values: (_plot, splits) => splits.map((split) => format.number(split)) },
         ],
         series: [

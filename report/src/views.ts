@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Views in 3D of several meshes with linked cameras. One WebGL context draws all of them: browsers allow few.
+/// Views in 3D of several meshes with linked cameras. One canvas below all of them draws them: browsers allow few WebGL
+/// contexts, and copying pixels from a context is slow.
 
 import {
     AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Mesh as Object3, MeshLambertMaterial,
@@ -24,7 +25,7 @@ export interface Views {
 }
 
 interface View {
-    canvas: HTMLCanvasElement;
+    frame: HTMLElement;
     scene: Scene;
     camera: PerspectiveCamera;
     controls: OrbitControls;
@@ -35,22 +36,26 @@ interface View {
 const surface: Colour = [196, 200, 206];
 const sentenceWithoutWebGL = "The views in 3D need WebGL 2, which this browser does not offer or has turned off. The pictures above show the same results.";
 const turn = Math.PI / 24;
+/// Pixels along an edge of the canvas. All devices with WebGL 2 can draw that many.
+const largestCanvas = 4096;
 
 export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
-    const screen = document.createElement("canvas");
+    const canvas = element("canvas", { class: "views-canvas", "aria-hidden": "true" });
     // Asked here, because the renderer reports a missing context on the console.
-    const context = screen.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
     if (!context) return { root: element("p", null, sentenceWithoutWebGL), dispose: () => {} };
-    const renderer = new WebGLRenderer({ canvas: screen, context, antialias: true, alpha: true });
+    const renderer = new WebGLRenderer({ canvas, context, antialias: true, alpha: true });
     renderer.setClearColor(0x000000, 0);
+    renderer.setScissorTest(true);
 
     const box = boxOf(meshes);
-    const all = meshes.map(({ mesh, title }) => make(mesh, title));
+    const all: View[] = [];
     let isLinking = false;
-    let frame = 0;
+    let waiting = 0;
+    for (const { mesh, title } of meshes) all.push(make(mesh, title));
 
     function make(mesh: Mesh, title: string): View {
-        const canvas = element("canvas", { class: "view", tabindex: 0, role: "img", "aria-label": `${title} in 3D. Arrow keys turn it, plus and minus zoom, 0 resets it.` });
+        const frame = element("div", { class: "view", tabindex: 0, role: "img", "aria-label": `${title} in 3D. Arrow keys turn it, plus and minus zoom, 0 resets it.` });
         const { geometry, material } = drawable(mesh, scale);
         const scene = new Scene();
         const camera = new PerspectiveCamera(35, 1, box.radius / 100, box.radius * 100);
@@ -60,14 +65,14 @@ export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
         light.target.position.set(0, 0, -1);
         camera.add(light, light.target);
         scene.add(new Object3(geometry, material), new AmbientLight(0xffffff, 0.45 * Math.PI), camera);
-        const controls = new OrbitControls(camera, canvas);
-        const view = { canvas, scene, camera, controls, geometry, material };
+        const controls = new OrbitControls(camera, frame);
+        const view = { frame, scene, camera, controls, geometry, material };
         // The wheel scrolls the page until a view is chosen.
         controls.enableZoom = false;
-        canvas.addEventListener("focus", () => (controls.enableZoom = true));
-        canvas.addEventListener("blur", () => (controls.enableZoom = false));
-        canvas.addEventListener("pointerdown", () => canvas.focus({ preventScroll: true }));
-        canvas.addEventListener("keydown", (event) => onKey(view, event));
+        frame.addEventListener("focus", () => (controls.enableZoom = true));
+        frame.addEventListener("blur", () => (controls.enableZoom = false));
+        frame.addEventListener("pointerdown", () => frame.focus({ preventScroll: true }));
+        frame.addEventListener("keydown", (event) => onKey(view, event));
         controls.addEventListener("change", () => link(view));
         reset(view);
         return view;
@@ -75,7 +80,7 @@ export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
 
     function reset(view: View): void {
         view.controls.target.copy(box.centre);
-        view.camera.position.copy(box.centre).add(new Vector3(0.55, -1, 0.45).normalize().multiplyScalar(box.radius * 3.4));
+        view.camera.position.copy(box.centre).add(new Vector3(0.55, -1, 0.45).normalize().multiplyScalar(box.radius * 2.8));
         view.controls.update();
     }
 
@@ -113,38 +118,39 @@ export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
     }
 
     function request(): void {
-        if (frame === 0) frame = requestAnimationFrame(draw);
+        if (waiting === 0) waiting = requestAnimationFrame(draw);
     }
 
     function draw(): void {
-        frame = 0;
-        const ratio = Math.min(devicePixelRatio, 2);
+        waiting = 0;
+        const place = root.getBoundingClientRect();
+        if (place.width === 0 || place.height === 0) return;
+        renderer.setPixelRatio(Math.min(devicePixelRatio, 2, largestCanvas / place.width, largestCanvas / place.height));
+        renderer.setSize(place.width, place.height);
         for (const view of all) {
-            const [width, height] = [view.canvas.clientWidth * ratio, view.canvas.clientHeight * ratio].map(Math.round) as [number, number];
-            if (width === 0 || height === 0) continue;
-            if (screen.width !== width || screen.height !== height) renderer.setSize(width, height, false);
-            if (view.canvas.width !== width || view.canvas.height !== height) [view.canvas.width, view.canvas.height] = [width, height];
+            const box = view.frame.getBoundingClientRect();
+            const [x, y] = [box.left - place.left + view.frame.clientLeft, place.bottom - box.bottom + view.frame.clientTop];
+            const [width, height] = [view.frame.clientWidth, view.frame.clientHeight];
+            renderer.setViewport(x, y, width, height);
+            renderer.setScissor(x, y, width, height);
             view.camera.aspect = width / height;
             view.camera.updateProjectionMatrix();
             renderer.render(view.scene, view.camera);
-            const plane = view.canvas.getContext("2d");
-            plane?.clearRect(0, 0, width, height);
-            plane?.drawImage(screen, 0, 0);
-            view.canvas.dataset["camera"] = view.camera.position.toArray().map((value) => value.toPrecision(6)).join(" ");
-            view.canvas.dataset["drawn"] = "true";
+            view.frame.dataset["camera"] = view.camera.position.toArray().map((value) => value.toPrecision(6)).join(" ");
         }
     }
 
-    const root = element("ul", { class: "strip views" }, all.map((view, index) =>
-        element("li", { class: meshes[index]!.isCurrent ? "current" : null }, element("figure", null, view.canvas, element("figcaption", null, meshes[index]!.title)))));
+    const list = element("ul", { class: "strip views" }, all.map((view, index) =>
+        element("li", { class: meshes[index]!.isCurrent ? "current" : null }, element("figure", null, view.frame, element("figcaption", null, meshes[index]!.title)))));
+    const root = element("div", { class: "views-stage" }, canvas, list);
     const sizes = new ResizeObserver(request);
-    for (const view of all) sizes.observe(view.canvas);
+    sizes.observe(root);
     request();
 
     return {
         root,
         dispose() {
-            cancelAnimationFrame(frame);
+            cancelAnimationFrame(waiting);
             sizes.disconnect();
             for (const view of all) {
                 view.controls.dispose();

@@ -178,7 +178,7 @@ function steps(seconds: number, hasFailed: boolean, isCached: boolean): Step[] {
 function histogramOf(size: number, waves: number): Histogram {
     const tolerance = size * 0.006;
     const [bins, high] = [25, 2 * tolerance];
-    const weights = Array.from({ length: bins }, (_, bin) => Math.exp(-(((bin + 0.5 - bins / 2) / (bins / 2)) * high) ** 2 / (2 * (0.6 * waves) ** 2)));
+    const weights = Array.from({ length: bins }, (_, bin) => Math.exp(-((((bin + 0.5 - bins / 2) / (bins / 2)) * high) ** 2) / (2 * (0.6 * waves) ** 2)));
     const sum = weights.reduce((a, b) => a + b);
     return { low: -high, high, shares: weights.map((weight) => weight / sum), tolerance: [-tolerance, tolerance] };
 }
