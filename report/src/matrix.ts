@@ -15,7 +15,7 @@ import { symbol, verdicts } from "./verdict.ts";
 
 const pageSize = 200;
 /// More columns than this do not fit on paper beside each other.
-const paperColumns = 7;
+const paperColumns = 6;
 
 export interface Matrix {
     readonly section: HTMLElement;
@@ -149,8 +149,9 @@ export function matrix(report: Report): Matrix {
         scroll.classList.toggle("screen-only", report.columns.length > paperColumns);
         if (report.columns.length <= paperColumns || rows.length === 0) return replaceChildren(paper);
         const tables: HTMLElement[] = [];
-        for (let from = 0; from < report.columns.length; from += paperColumns) {
-            const to = Math.min(from + paperColumns, report.columns.length);
+        const parts = Math.ceil(report.columns.length / paperColumns);
+        for (let part = 0; part < parts; ++part) {
+            const [from, to] = [part, part + 1].map((at) => Math.round((at * report.columns.length) / parts)) as [number, number];
             tables.push(element("table", { class: "matrix" },
                 element("thead", null, element("tr", null, element("th", { scope: "col" }, "Scan"),
                     report.columns.slice(from, to).map((column) => element("th", { scope: "col" }, column.title)))),

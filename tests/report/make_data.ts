@@ -18,6 +18,7 @@ interface Options {
     isAccepted: boolean;
     /// Without them the cells have numbers only.
     hasPictures: boolean;
+    pictureWidth?: number;
     workflows?: string[];
 }
 
@@ -69,13 +70,14 @@ export function makeData(options: Options): ReportData {
         const one = run(131 - options.runs + index, options.runs - 1 - index);
         data.runs.push({ id: one.id, started: one.started, accepted: options.isAccepted && (one.id === 118 || one.id === 104), verdict: index % 9 === 5 ? "regressed" : "passed" });
     }
+    const [width, height] = sizeOf(options);
     const workflows = options.workflows ?? ["solid"];
     for (let index = 0; index < options.scans; ++index) {
         const scan = scanOf(index);
         const shapes = { truth: torus(scan.size, 0, 1), scan: torus(scan.size, scan.size * 0.002, index, 70, 30) };
         if (options.hasPictures) {
-            if (scan.hasTruth) data.images[`truth-${index}`] = picture(shapes.truth, null);
-            data.images[`scan-${index}`] = picture(shapes.scan, null, 240, 180, true);
+            if (scan.hasTruth) data.images[`truth-${index}`] = picture(shapes.truth, null, width, height);
+            data.images[`scan-${index}`] = picture(shapes.scan, null, width, height, true);
         }
         for (const workflow of workflows) {
             options.variants.forEach((variant, at) => addCell(data, options, scan, index, workflow, variant, at));
@@ -123,21 +125,27 @@ function addCell(data: ReportData, options: Options, scan: Scan, index: number, 
     if (!options.hasPictures) return;
 
     const shape = torus(scan.size, waves, id);
+    const [width, height] = sizeOf(options);
     cell.pictures = { scan: `scan-${index}`, result: `result-${id}` };
-    data.images[`result-${id}`] = picture(shape, null);
+    data.images[`result-${id}`] = picture(shape, null, width, height);
     if (scan.hasTruth) {
         cell.pictures.truth = `truth-${index}`;
         cell.pictures.deviation = `deviation-${id}`;
-        data.images[`deviation-${id}`] = picture(shape, cell.histogram);
+        data.images[`deviation-${id}`] = picture(shape, cell.histogram, width, height);
     }
     if (isOther && before !== waves) {
         cell.pictures.accepted = `accepted-${id}`;
-        data.images[`accepted-${id}`] = picture(torus(scan.size, before, id + 1), null);
+        data.images[`accepted-${id}`] = picture(torus(scan.size, before, id + 1), null, width, height);
     }
     if (index < 6) {
         cell.mesh = `mesh-${id}`;
         data.meshes[cell.mesh] = encode(shape as Shape, scan.hasTruth);
     }
+}
+
+function sizeOf(options: Options): [width: number, height: number] {
+    const width = options.pictureWidth ?? 240;
+    return [width, 0.75 * width];
 }
 
 function describe(cell: Cell): void {
@@ -222,6 +230,7 @@ function quoted(path: string): string {
 
 export const sets: Record<string, () => ReportData> = {
     nightly: () => makeData({ batch: "library", scans: 50, variants: allVariants, runs: 30, isAccepted: true, hasPictures: true }),
+    small: () => makeData({ batch: "library", scans: 14, variants: allVariants, runs: 30, isAccepted: true, hasPictures: true, pictureWidth: 120 }),
     first: () => makeData({ batch: "first-night", scans: 5, variants: ["default", "fine"], runs: 1, isAccepted: false, hasPictures: true, workflows: ["solid", "open"] }),
     one: () => makeData({ batch: "one", scans: 1, variants: ["default"], runs: 3, isAccepted: true, hasPictures: true }),
     none: () => makeData({ batch: "none", scans: 0, variants: [], runs: 0, isAccepted: false, hasPictures: false }),
