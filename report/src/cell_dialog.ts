@@ -25,6 +25,7 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
     const root = element("dialog", { id: "cell", "aria-labelledby": "cell-title", onclose: () => onClose(), onclick: (event: MouseEvent) => { if (event.target === root) root.close(); } }, bar, content);
     let cell: Cell | null = null;
     let drawn: Views | null = null;
+    let nearby: IntersectionObserver | null = null;
     let opener: string | null = null;
 
     function trendLink(of: Cell): HTMLElement | null {
@@ -32,6 +33,7 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
     }
 
     function empty(): void {
+        nearby?.disconnect();
         drawn?.dispose();
         drawn = null;
         content.replaceChildren();
@@ -54,7 +56,7 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
             empty();
             cell = next;
             if (!root.open) opener = `#cell-${next.id}`;
-            const place = element("div", { class: "views-place" });
+            const place = element("div", { class: "views-wait" });
             const meshes = meshesOf(report, next);
             replaceChildren(title, cellHeading(report, next));
             replaceChildren(content, cellLine(next), trendLink(next), variantLinks(report, next), cellDetails(report, next, meshes.length > 0 ? place : element("p", { class: "quiet" }, "No mesh of this scan is in the page.")));
@@ -62,12 +64,14 @@ export function cellDialog(report: Report, closed: () => void): CellDialog {
             root.scrollTop = 0;
             title.focus();
             if (meshes.length === 0) return;
-            requestAnimationFrame(() => {
-                if (cell !== next || drawn) return;
+            // Drawing is slow without a GPU, so it waits until the reader comes near.
+            nearby = new IntersectionObserver((entries) => {
+                if (!entries.some((entry) => entry.isIntersecting)) return;
+                nearby?.disconnect();
                 drawn = views(meshes, report.deviationScale(next));
                 place.replaceChildren(drawn.root);
-                if (drawn.root.tagName === "DIV") place.prepend(element("p", { class: "quiet" }, "Drag or use the arrow keys to turn; all views turn together. Choose a view to zoom with the wheel."));
-            });
+            }, { root, rootMargin: "300px" });
+            nearby.observe(place);
         },
         close() {
             if (root.open) root.close();

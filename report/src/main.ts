@@ -25,6 +25,11 @@ function build(report: Report): void {
     const dialog = cellDialog(report, forgetCell);
     const sections = [changes(report), rules(report), table.section, chart?.section ?? null].filter((section) => section !== null);
 
+    function redraw(onPaper: boolean): void {
+        table.redraw(onPaper);
+        chart?.redraw(onPaper);
+    }
+
     function forgetCell(): void {
         if (/^#cell-/.test(location.hash)) history.replaceState(null, "", "#");
     }
@@ -43,7 +48,7 @@ function build(report: Report): void {
             element("nav", { "aria-label": "Sections" },
                 element("a", { href: "#summary" }, "Summary"),
                 sections.map((section) => element("a", { href: `#${section.id}` }, section.querySelector("h2")?.textContent)))),
-        element("main", null, summary(report, table.choose), sections, preparePaper(report, dialog.shown, (onPaper) => chart?.redraw(onPaper))),
+        element("main", null, summary(report, table.choose), sections, preparePaper(report, dialog.shown, redraw)),
         element("footer", { class: "bottom" }, element("p", { class: "quiet" }, `Made by Scanmill from the records in ${report.data.folder}.`)),
         dialog.root);
     addEventListener("hashchange", follow);

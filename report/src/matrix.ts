@@ -19,6 +19,8 @@ const paperColumns = 6;
 
 export interface Matrix {
     readonly section: HTMLElement;
+    /// Adds or removes what only paper shows.
+    redraw(onPaper: boolean): void;
     /// Shows the rows that have a cell with this verdict.
     choose(verdict: Verdict): void;
 }
@@ -29,6 +31,7 @@ export function matrix(report: Report): Matrix {
     let scope: Scope = "row";
     let order: Order = { column: null, descending: false };
     let isSorted = false;
+    let onPage: Row[] = [];
     let heat = new Heat(report, metric, scope);
     const chosen = new Set<Verdict>();
 
@@ -122,7 +125,7 @@ export function matrix(report: Report): Matrix {
             const text = report.rows.length === 0 ? "The run has no cells." : "No scan matches.";
             replaceChildren(body, element("tr", null, element("td", { colspan: report.columns.length + 1 }, text)));
         }
-        drawForPaper(rows);
+        onPage = rows;
     }
 
     function line(row: Row, from: number, to: number): HTMLElement {
@@ -145,9 +148,10 @@ export function matrix(report: Report): Matrix {
     }
 
     /// Paper has no scrolling: many columns become several tables.
-    function drawForPaper(rows: Row[]): void {
+    function drawForPaper(onPaper: boolean): void {
+        const rows = onPage;
         scroll.classList.toggle("screen-only", report.columns.length > paperColumns);
-        if (report.columns.length <= paperColumns || rows.length === 0) return replaceChildren(paper);
+        if (!onPaper || report.columns.length <= paperColumns) return replaceChildren(paper);
         const tables: HTMLElement[] = [];
         const parts = Math.ceil(report.columns.length / paperColumns);
         for (let part = 0; part < parts; ++part) {
@@ -182,6 +186,7 @@ export function matrix(report: Report): Matrix {
 
     return {
         section,
+        redraw: drawForPaper,
         choose(verdict) {
             search.value = "";
             chosen.clear();

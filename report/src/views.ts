@@ -123,7 +123,7 @@ export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
 
     function draw(): void {
         waiting = 0;
-        const place = root.getBoundingClientRect();
+        const place = stage.getBoundingClientRect();
         if (place.width === 0 || place.height === 0) return;
         renderer.setPixelRatio(Math.min(devicePixelRatio, 2, largestCanvas / place.width, largestCanvas / place.height));
         renderer.setSize(place.width, place.height);
@@ -142,9 +142,11 @@ export function views(meshes: ViewedMesh[], scale: ColourScale | null): Views {
 
     const list = element("ul", { class: "strip views" }, all.map((view, index) =>
         element("li", { class: meshes[index]!.isCurrent ? "current" : null }, element("figure", null, view.frame, element("figcaption", null, meshes[index]!.title)))));
-    const root = element("div", { class: "views-stage" }, canvas, list);
+    const stage = element("div", { class: "views-stage" }, canvas, list);
+    const hint = element("p", { class: "quiet" }, "Drag or use the arrow keys to turn; all views turn together. Choose a view to zoom with the wheel.");
+    const root = element("div", { class: "views-place" }, hint, stage);
     const sizes = new ResizeObserver(request);
-    sizes.observe(root);
+    sizes.observe(stage);
     request();
 
     return {

@@ -31,7 +31,9 @@ const isAtMost = async (page, limit) => assert.ok((await page.evaluate(() => doc
 describe("the file", () => {
     test("Page_Built_HasNoFrameAndNoRemoteAddress", () => {
         const html = readFileSync(new URL("empty.html", pages), "utf8");
-        assert.doesNotMatch(html, /<iframe|<link[^>]+href="(?!data:)|<(script|img)[^>]+src=|@import|url\((?!data:)/i);
+        const markup = html.replace(/<(script|style)([^>]*)>.*?<\/\1>/gs, "<$1$2>");
+        assert.doesNotMatch(markup, /<iframe|<link[^>]+href="(?!data:)|<[^>]+src=|https?:/i);
+        assert.doesNotMatch(/<style>(.*?)<\/style>/s.exec(html)[1], /@import|url\((?!data:)/);
         assert.match(html, /default-src 'none'/);
         assert.ok(statSync(new URL("empty.html", pages)).size < 1_000_000);
     });
@@ -136,10 +138,15 @@ describe("the matrix", () => {
         assert.match(await bar.innerText(), /Scans 1–200 of 1,250\. On other pages: 87 regressed, 94 doubtful/);
         await bar.getByRole("button", { name: "Next" }).click();
         assert.match(await bar.innerText(), /Scans 201–400 of 1,250/);
-        const start = Date.now();
-        await page.locator("#matrix .sort[data-column='5']").click();
+        // Less than a second on an idle machine; the limit is for a busy one.
+        const time = await page.evaluate(() => {
+            const start = performance.now();
+            document.querySelector("#matrix .sort[data-column='5']").click();
+            document.querySelector("#matrix .scroll").getBoundingClientRect();
+            return performance.now() - start;
+        });
+        assert.ok(time < 4000, `${time} ms`);
         await page.getByLabel("Scan", { exact: true }).first().fill("torus");
-        assert.ok(Date.now() - start < 5000);
         assert.equal((await scans(page)).length, 200);
     });
 });
@@ -218,6 +225,7 @@ describe("a cell", () => {
 
 describe("the views in 3D", () => {
     browserTest("Views_Opened_AreDrawnInTheLegendsColours", "small", { hash: "#cell-12", height: 1400 }, async (page) => {
+        await page.locator("dialog .views-wait").scrollIntoViewIfNeeded();
         const view = page.locator("dialog .view").last();
         await page.locator("dialog .view[data-camera]").last().waitFor();
         await view.scrollIntoViewIfNeeded();
@@ -228,6 +236,7 @@ describe("the views in 3D", () => {
         assert.equal(await page.locator("dialog .view").count(), 6);
     });
     browserTest("Views_OneTurned_TurnsTheOthers", "small", { hash: "#cell-7", height: 1400 }, async (page) => {
+        await page.locator("dialog .views-wait").scrollIntoViewIfNeeded();
         await page.locator("dialog .view[data-camera]").nth(1).waitFor();
         const cameras = () => page.locator("dialog .view").evaluateAll((views) => views.map((view) => view.dataset.camera));
         const before = await cameras();
@@ -253,6 +262,7 @@ describe("the views in 3D", () => {
     test("Views_NoWebGL_SaySo", async () => {
         const plain = await launch("--disable-3d-apis");
         const page = await open(plain, "small", { hash: "#cell-7" });
+        await page.locator("dialog .views-wait").scrollIntoViewIfNeeded();
         await page.getByText("The views in 3D need WebGL 2").waitFor();
         await plain.close();
     });
