@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The data of a report page, as the program writes it: JSON in the element `data`.
+///
+/// Times are ISO 8601 in UTC, seconds are elapsed seconds unless the name says `cpu-seconds`, memory is in bytes.
+/// `text`, `accepted`, `found`, `change` and the medians are texts for people: they have the unit already.
+
+export type Verdict = "failed" | "missing" | "regressed" | "doubtful" | "improved" | "new" | "passed";
+
+export interface ReportData {
+    scanmill: 1;
+    batch: string;
+    verdict: Verdict;
+    folder: string;
+    counts: Partial<Record<Verdict, number>>;
+    run: Run;
+    accepted: Run | null;
+    acceptance: Statement | null;
+    /// Version, machine, gate, changed filters, notes: name and text.
+    facts: [string, string][];
+    "default-metric": string;
+    /// Every name that a value of a cell has, and `seconds`, `cpu-seconds`, `memory`.
+    metrics: MetricInfo[];
+    rules: RuleSummary[];
+    cells: Cell[];
+    /// Sorted by effect, size and confidence.
+    changes: Change[];
+    /// The runs of the trends, oldest first.
+    runs: { id: number; started: string; accepted: boolean; verdict: string }[];
+    /// One value per entry of `runs`.
+    trends: Trend[];
+    /// Pictures by key: data:image/png;base64,…
+    images: Record<string, string>;
+    meshes: Record<string, Mesh>;
+    /// Sentences such as "3 views in 3D were left out, because the page would be larger than 15 MB".
+    notes: string[];
+}
+
+/// Who decided something, why and when.
+export interface Statement {
+    who: string;
+    why: string;
+    at: string;
+}
+
+export interface Run {
+    id: number;
+    started: string;
+    version: string;
+    machine: string;
+    threads: number;
+    jobs: number;
+    seconds: number;
+}
+
+export interface MetricInfo {
+    name: string;
+    unit: string;
+    better: "smaller" | "larger" | null;
+}
+
+export interface RuleSummary {
+    metric: string;
+    rule: string;
+    variant: string;
+    cells: number;
+    median: string;
+    "median-change": string;
+    regressed: number;
+}
+
+export interface Cell {
+    id: number;
+    workflow: string;
+    scan: string;
+    variant: string;
+    verdict: Verdict;
+    outcome: string;
+    seconds: number;
+    reasons: string[];
+    causes: string[];
+    doubts: string[];
+    warnings: string[];
+    /// Set if the doubts were acknowledged.
+    known: Statement | null;
+    command: string;
+    error: string;
+    log: string;
+    /// If several values have the same name, the first is the cell's value in the matrix.
+    values: Value[];
+    steps: Step[];
+    outputs: { file: string; bytes: number; sha256: string }[];
+    /// Keys of `images`. `accepted` is the result of the accepted run.
+    pictures: Pictures;
+    /// A key of `meshes`.
+    mesh: string | null;
+    "deviation-unit": string;
+    histogram: Histogram | null;
+}
+
+export interface Value {
+    source: string;
+    name: string;
+    value: number | null;
+    text: string;
+    accepted: string | null;
+}
+
+export interface Step {
+    label: string;
+    filter: string;
+    version: number;
+    seconds: number;
+    "cpu-seconds": number;
+    memory: number;
+    /// `ran`, `cached` or `same inputs`.
+    origin: string;
+    outcome: string;
+    parameters: [string, string][];
+}
+
+export interface Pictures {
+    truth?: string;
+    scan?: string;
+    result?: string;
+    deviation?: string;
+    accepted?: string;
+}
+
+/// Shares of the deviations in bins of equal width between `low` and `high`.
+///
+/// `low`, `high` and `tolerance` are also the colour scale of the deviation picture and of the view in 3D. They are the
+/// same for all cells of a scan, so that variants can be compared by colour.
+export interface Histogram {
+    low: number;
+    high: number;
+    shares: number[];
+    tolerance: [number, number] | null;
+}
+
+export interface Change {
+    cell: number;
+    what: string;
+    accepted: string;
+    found: string;
+    change: string;
+    share: number | null;
+    rule: string;
+    effect: "regression" | "improvement" | "listed";
+}
+
+export interface Trend {
+    cell: number;
+    metric: string;
+    values: (number | null)[];
+}
+
+/// A triangle mesh with quantised vertices. Integers are little-endian.
+export interface Mesh {
+    /// The box of the vertices, in the unit of the scan.
+    low: [number, number, number];
+    high: [number, number, number];
+    /// Base64 of u16 × 3 per vertex: 0 is `low`, 65535 is `high`.
+    positions: string;
+    /// Base64 of u16 × 3 per triangle, or of u32 × 3 if there are more than 65535 vertices.
+    triangles: string;
+    vertices: number;
+    /// Base64 of u16 per vertex: 0 is `deviation-low`, 65534 is `deviation-high`, 65535 is no deviation.
+    deviation: string | null;
+    "deviation-low": number;
+    "deviation-high": number;
+}
