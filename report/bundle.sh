@@ -1,0 +1,19 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# bundle.sh SOURCE WORK PAGE: bundles the report page in the folder WORK and writes it to PAGE.
+set -eu
+mkdir -p "$2" "$(dirname "$3")"
+cd "$2"
+rm -rf src dist
+cp -R "$1/src" "$1/build.mjs" "$1/package.json" "$1/package-lock.json" "$1/tsconfig.json" .
+cp "$1/.npmrc" . 2>/dev/null || true
+# The packages stay while the lock file does.
+if ! cmp -s package-lock.json node_modules/.bundled-lock.json; then
+    npm ci --silent --no-audit --no-fund || {
+        echo "error: npm cannot fetch the packages of the report page; cmake -DSCANMILL_REPORT=OFF builds without the page" >&2
+        exit 1
+    }
+    cp package-lock.json node_modules/.bundled-lock.json
+fi
+npm run --silent build
+cp dist/page.html "$3"
