@@ -298,8 +298,14 @@ private:
     /// A file that a step of the cell reads, and whether one of its steps measures.
     struct Files {
         std::string scan, truth;
-        LengthUnit unit = LengthUnit::unknown;
+        LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown;
     };
+    /// The unit that was declared for the file; unknown: that of the file itself.
+    static LengthUnit declared_unit(const StepRecord& read) {
+        const auto unit = std::ranges::find(read.authored, "unit", &std::pair<std::string, std::string>::first);
+        return unit == read.authored.end() ? LengthUnit::unknown
+                                           : length_unit(unit->second).value_or(LengthUnit::unknown);
+    }
     Files files_of(const CellRecord& record, const StepsByNode& steps) const {
         Files files;
         std::vector<std::string> read;
@@ -310,7 +316,8 @@ private:
             const StepRecord& step = *found->second;
             if (step.filter.empty()) {
                 read.push_back(step.file);
-                if (read.size() == 1) files.unit = step.properties.unit;
+                files.truth_unit = declared_unit(step);
+                if (read.size() == 1) files.unit = files.truth_unit;
                 continue;
             }
             const FilterSpec* spec = library_.find(step.filter);
@@ -356,7 +363,7 @@ private:
             const std::string camera = files.truth.empty() ? files.scan : files.truth;
             const auto result_of = [&](const OutputRecord& output) {
                 return PreviewWish{output.evidence.empty() ? output.file : output.evidence, output.sha256, files.truth,
-                                   camera, output.properties.unit, LengthUnit::unknown, kind_of<TriangleMesh>()};
+                                   camera, output.properties.unit, files.truth_unit, kind_of<TriangleMesh>()};
             };
             if (const OutputRecord* output = mesh_of(*record))
                 uses_[wish(result_of(*output), true)].emplace_back(id, Role::result);
@@ -364,10 +371,10 @@ private:
                 if (const OutputRecord* output = mesh_of(*found->second))
                     uses_[wish(result_of(*output), false)].emplace_back(id, Role::accepted);
             if (!files.scan.empty())
-                uses_[wish({files.scan, "", "", camera, files.unit, LengthUnit::unknown, std::nullopt}, true)]
+                uses_[wish({files.scan, "", "", camera, files.unit, files.truth_unit, std::nullopt}, true)]
                     .emplace_back(id, Role::scan);
             if (!files.truth.empty())
-                uses_[wish({files.truth, "", "", files.truth, LengthUnit::unknown, LengthUnit::unknown, std::nullopt},
+                uses_[wish({files.truth, "", "", files.truth, files.truth_unit, files.truth_unit, std::nullopt},
                            true)]
                     .emplace_back(id, Role::truth);
         }
