@@ -177,7 +177,7 @@ describe("a cell", () => {
         }
         await page.keyboard.press("Escape");
         await page.locator("dialog[open]").waitFor({ state: "detached" });
-        assert.doesNotMatch(page.url(), /cell/);
+        await page.waitForFunction(() => location.hash === "");
         assert.ok(await link.evaluate((element) => element === document.activeElement));
         assert.equal(await page.locator("dialog .views-canvas").count(), 0);
     });
