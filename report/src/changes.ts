@@ -95,7 +95,7 @@ function picture(source: string, caption: string, alt: string): HTMLElement {
 export function changeTable(changes: Change[], label: string): HTMLElement {
     return element(
         "div",
-        { class: "scroll", role: "region", "aria-label": label, tabindex: 0 },
+        { class: "scroll" },
         element(
             "table",
             { class: "change-table", "aria-label": label },

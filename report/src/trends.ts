@@ -53,7 +53,7 @@ export function trends(report: Report): Trends | null {
         const lines = linesOf(report, row, metricSelect.value);
         const accepted = data.runs.filter((run) => run.accepted).map((run) => run.id);
         replaceChildren(note, `${metricSelect.value} over ${format.counted(data.runs.length, "run")}. `,
-            accepted.length > 0 ? `Triangles and dashed lines mark accepted runs: ${accepted.join(", ")}.` : "No run was accepted.");
+            accepted.length > 0 ? `Triangles and dashed lines mark accepted runs: ${accepted.join(", ")}.` : "None of these runs was accepted.");
         plot?.destroy();
         stage.replaceChildren();
         plot = new uPlot(options(report, lines, stage.clientWidth || 800), [data.runs.map((_, index) => index), ...lines.map((line) => line.trend.values)], stage);
@@ -112,7 +112,7 @@ function options(report: Report, lines: Line[], width: number): uPlot.Options {
         width,
         height,
         scales: { x: { time: false, range: () => [-0.5, runs.length - 0.5] } },
-        legend: { live: true, markers: { width: 3, dash: (_plot, index) => ((dashes[(index - 1) % dashes.length] ?? []).length === 0 ? "solid" : "dashed") } },
+        legend: { live: true, markers: { width: 3 } },
         cursor: { points: { size: 8 } },
         axes: [
             { ...axis, label: "run", labelSize: 18, labelGap: -4, labelFont: axis.font, size: 32, space: 36, incrs: [1, 2, 5, 10, 20, 50, 100], values: (_plot, splits) => splits.map((split) => (Number.isInteger(split) ? label(split) : "")) },

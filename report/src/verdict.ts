@@ -3,7 +3,7 @@
 
 import type { ReportData, Verdict } from "./data.ts";
 import { element } from "./element.ts";
-import { counted } from "./format.ts";
+import { count } from "./format.ts";
 
 /// The worst first.
 export const verdicts: readonly Verdict[] = ["failed", "missing", "regressed", "doubtful", "improved", "new", "passed"];
@@ -29,30 +29,35 @@ export function symbol(verdict: Verdict): HTMLElement {
     return element("span", { class: `symbol ${verdict}`, "aria-hidden": "true" }, symbols[verdict]);
 }
 
-/// The verdict of the run in one sentence.
+/// The verdict of the run in words. The other cells that need a person are counted in a second sentence.
 export function sentence(data: ReportData): string {
+    const others = troubles
+        .filter((verdict) => verdict !== data.verdict && (data.counts[verdict] ?? 0) > 0)
+        .map((verdict) => `${count(data.counts[verdict] ?? 0)} ${verdict}`);
+    return verdictSentence(data) + (others.length > 0 ? ` Also ${others.join(", ")}.` : "");
+}
+
+function verdictSentence(data: ReportData): string {
     const cells = data.cells.length;
-    const of = (verdict: Verdict) => data.counts[verdict] ?? 0;
     if (cells === 0) return "The run has no cells.";
+    const number = data.counts[data.verdict] ?? 0;
+    const some = cells === 1 ? "The cell" : `${count(number)} of ${count(cells)} cells`;
+    const are = number === 1 ? "is" : "are";
     const than = data.accepted ? `the accepted run ${data.accepted.id}` : "an accepted run";
     switch (data.verdict) {
         case "regressed":
-            return `${of("regressed")} of ${counted(cells, "cell")} ${are(of("regressed"))} worse than in ${than}.`;
+            return `${some} ${are} worse than in ${than}.`;
         case "missing":
-            return `${of("missing")} of ${counted(cells, "cell")} ${are(of("missing"))} missing, which the accepted run has.`;
+            return `${some} ${are} missing, which ${than} has.`;
         case "failed":
-            return `${of("failed")} of ${counted(cells, "cell")} failed.`;
+            return `${some} failed.`;
         case "doubtful":
-            return `${of("doubtful")} of ${counted(cells, "cell")} ${are(of("doubtful"))} doubtful: a filter has a reason to think that the result is not the scanned surface.`;
+            return `${some} ${are} doubtful: a filter has a reason to think that the result is not the scanned surface.`;
         case "improved":
-            return `${of("improved")} of ${counted(cells, "cell")} ${are(of("improved"))} better than in ${than}, and none is worse.`;
+            return `${some} ${are} better than in ${than}, and none is worse.`;
         case "new":
-            return `No run is accepted yet, so ${counted(cells, "cell")} could not be compared.`;
+            return `No run is accepted yet, so ${cells === 1 ? "the cell" : `${count(cells)} cells`} could not be compared.`;
         case "passed":
-            return cells === 1 ? `The cell is as good as in ${than}.` : `All ${counted(cells, "cell")} are as good as in ${than}.`;
+            return cells === 1 ? `The cell is as good as in ${than}.` : `All ${count(cells)} cells are as good as in ${than}.`;
     }
-}
-
-function are(number: number): string {
-    return number === 1 ? "is" : "are";
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opens pages in headless Chromium, and records what they must not do: messages, errors and requests.
 import { chromium } from "playwright-core";
-import { existsSync } from "node:fs";
 
 export const pages = new URL("./build/pages/", import.meta.url).href;
 
@@ -10,12 +9,8 @@ const flags = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-ba
 /// A remark of the driver that draws without a GPU, when the browser takes the pixels of a WebGL canvas. It is not the page's.
 const driverRemark = /GL Driver Message \(OpenGL, Performance.*GPU stall due to ReadPixels/;
 
-export function findChromium() {
-    return [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => path && existsSync(path));
-}
-
 export function launch(...more) {
-    return chromium.launch({ executablePath: findChromium(), args: [...flags, ...more] });
+    return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...flags, ...more] });
 }
 
 /// Opens a page of build/pages; `page.faults` lists what went wrong since.

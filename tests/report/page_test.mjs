@@ -28,6 +28,11 @@ function browserTest(title, name, options, body) {
 const scans = (page) => page.locator("#matrix .scroll tbody th").allTextContents();
 const isAtMost = async (page, limit) => assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= limit);
 
+async function print(page) {
+    await page.emulateMedia({ media: "print" });
+    await page.locator(":root.paper").waitFor();
+}
+
 describe("the file", () => {
     test("Page_Built_HasNoFrameAndNoRemoteAddress", () => {
         const html = readFileSync(new URL("empty.html", pages), "utf8");
@@ -50,6 +55,7 @@ describe("the first screen", () => {
     browserTest("Summary_Regressed_SaysSoInWords", "small", {}, async (page) => {
         const text = await page.locator("#summary").innerText();
         assert.match(text, /4 of 84 cells are worse than in the accepted run 118/);
+        assert.match(text, /Also 2 failed, 1 missing, 3 doubtful\./);
         assert.match(text, /Accepted by Ann, 2026-11-16: looked at every mesh/);
         assert.match(text, /49 views in 3D were left out/);
         assert.match(await page.title(), /library: regressed/);
@@ -177,7 +183,7 @@ describe("a cell", () => {
         }
         await page.keyboard.press("Escape");
         await page.locator("dialog[open]").waitFor({ state: "detached" });
-        assert.doesNotMatch(page.url(), /cell/);
+        await page.waitForFunction(() => location.hash === "");
         assert.ok(await link.evaluate((element) => element === document.activeElement));
         assert.equal(await page.locator("dialog .views-canvas").count(), 0);
     });
@@ -336,8 +342,7 @@ describe("narrow screens and paper", () => {
             await isAtMost(page, 400);
         });
         browserTest(`Print_Sheet_ClipsNoTable: ${name}`, name, { width: 690, height: 1000 }, async (page) => {
-            await page.emulateMedia({ media: "print" });
-            await page.waitForTimeout(300);
+            await print(page);
             await isAtMost(page, 690);
             const clipped = await page.locator(".scroll, table, pre, .trend-stage").evaluateAll((all) =>
                 all.filter((element) => element.clientWidth > 0 && element.scrollWidth > element.clientWidth + 1).map((element) => `${element.className} ${element.scrollWidth} > ${element.clientWidth}`));
@@ -349,18 +354,16 @@ describe("narrow screens and paper", () => {
         assert.ok(await page.locator("dialog").evaluate((dialog) => dialog.scrollWidth <= dialog.clientWidth));
     });
     browserTest("Print_Troubles_AreExpanded", "small", { width: 690 }, async (page) => {
-        await page.emulateMedia({ media: "print" });
-        await page.waitForTimeout(300);
+        await print(page);
         const counts = readData("small").counts;
         assert.equal(await page.locator(".paper-cell").count(), counts.failed + counts.missing + counts.regressed + counts.doubtful);
         assert.match(await page.locator(".paper-cell").first().innerText(), /needs at least 4 points/);
         await page.emulateMedia({ media: "screen" });
-        await page.waitForTimeout(200);
+        await page.locator(":root:not(.paper)").waitFor();
         assert.equal(await page.locator(".paper-cell").count(), 0);
     });
     browserTest("Print_OpenCell_IsTheOnlyOne", "small", { width: 690, hash: "#cell-7" }, async (page) => {
-        await page.emulateMedia({ media: "print" });
-        await page.waitForTimeout(300);
+        await print(page);
         assert.equal(await page.locator(".paper-cell").count(), 1);
         assert.equal(await page.locator("#matrix").isVisible(), false);
     });
@@ -370,17 +373,20 @@ describe("narrow screens and paper", () => {
 });
 
 describe("speed", () => {
-    // The best of three, because the machine may be busy.
-    for (const [name, limit] of [["nightly", 2000], ["many", 5000]]) {
-        test(`Load_${name}_TakesLessThan${limit}ms`, async (context) => {
-            const times = [];
-            for (let repeat = 0; repeat < 3; ++repeat) {
-                const page = await open(browser, name);
-                times.push(await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd));
-                await page.close();
-            }
-            context.diagnostic(`${name}: ${times.map(Math.round).join(", ")} ms until loaded, ${(statSync(new URL(`${name}.html`, pages)).size / 1e6).toFixed(1)} MB`);
-            assert.ok(Math.min(...times) < limit);
+    // Processor time of the page's main thread: other programs on the machine hardly change it.
+    for (const [name, limit] of [["nightly", 2], ["many", 5]]) {
+        test(`Load_${name}_TakesLessThan${limit}Seconds`, async (context) => {
+            const page = await browser.newPage({ viewport: { width: 1400, height: 1000 } });
+            const session = await page.context().newCDPSession(page);
+            await session.send("Performance.enable", { timeDomain: "threadTicks" });
+            await page.goto(`${pages}${name}.html`);
+            const { metrics } = await session.send("Performance.getMetrics");
+            const processor = metrics.find((metric) => metric.name === "TaskDuration").value;
+            const elapsed = await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd / 1000);
+            await page.close();
+            const size = statSync(new URL(`${name}.html`, pages)).size / 1e6;
+            context.diagnostic(`${name}: ${size.toFixed(1)} MB, ${processor.toFixed(2)} s processor time, ${elapsed.toFixed(2)} s until loaded`);
+            assert.ok(processor > 0.01 && processor < limit);
         });
     }
 });

@@ -9,10 +9,12 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
     echo "skipped: the tests of the report page need Node and npm"
     exit 0
 fi
-if ! [ -x "${CHROMIUM:-/usr/bin/chromium}" ] && ! command -v chromium-browser google-chrome >/dev/null; then
+chromium=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
+if [ -z "$chromium" ]; then
     echo "skipped: the tests of the report page need Chromium; set CHROMIUM to its path"
     exit 0
 fi
+export CHROMIUM=$chromium
 
 # Installs what the lock file lists, if it was not installed since.
 install() {
