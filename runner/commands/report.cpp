@@ -3,19 +3,17 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
 #include "output/comparison_text.hpp"
+#include "output/page_file.hpp"
 #include "output/reproduce.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
-#include "scanmill/io/atomic_file.hpp"
-#include "scanmill/session/report_page.hpp"
 
 namespace scanmill::runner {
 
@@ -107,30 +105,6 @@ void require_metric(const std::string& metric, const Comparison& comparison) {
             .hint("there are " + enumerated(names));
 }
 
-/// Writes the report page, and prints its path. Returns the exit code of the comparison.
-int write_page(const Options& options, const RecordedRun& which, const std::optional<RecordedRun>& against) {
-    std::string page = page_template();
-    FilterLibrary library = open_library();
-    PreviewSettings settings;
-    settings.jobs = std::max(1u, std::thread::hardware_concurrency());
-    settings.worker_command = {"/proc/self/exe", "worker"};
-    const PageDocument document =
-        page_document(which, against, reproducing_command, library, settings, warning_printer());
-    std::error_code trouble;
-    if (options.html.has_parent_path()) std::filesystem::create_directories(options.html.parent_path(), trouble);
-    try {
-        AtomicFile file(options.html);
-        file.write(page_with(std::move(page), document));
-        file.commit();
-    } catch (const Error& error) {
-        throw error.reworded(fmt::format("'{}' {}", options.html.string(), error.sentence()));
-    }
-    fmt::print("{}: {}; the page is {}\n", printable_line(document.batch), name_of(document.verdict),
-               printable_line(options.html.string()));
-    for (const std::string& note : document.notes) print_warning(note);
-    return exit_code_of(compare_recorded(which, against, {}), options.strict);
-}
-
 int report(const Options& options) {
     if (options.accept || options.revoke || !options.acknowledge.empty()) {
         require_reason(options);
@@ -144,9 +118,10 @@ int report(const Options& options) {
         return done;
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
-    if (!options.html.empty()) return write_page(options, which, against);
+    if (!options.html.empty()) write_page_file(options.html, which, against);
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
     if (!options.metric.empty()) require_metric(options.metric, comparison);
+    if (!options.html.empty()) return exit_code_of(comparison, options.strict);
     if (options.json)
         print_json(report_json(comparison));
     else

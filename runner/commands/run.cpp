@@ -14,6 +14,7 @@
 #include "commands/common.hpp"
 #include "output/comparison_text.hpp"
 #include "output/error_output.hpp"
+#include "output/page_file.hpp"
 #include "output/progress.hpp"
 #include "output/reproduce.hpp"
 #include "output/run_output.hpp"
@@ -38,6 +39,7 @@ struct ExecuteOptions {
     std::uint64_t seed = 0;
     bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false,
          is_wide = false;
+    std::filesystem::path html;  ///< batches only
 };
 
 struct RunOptions {
@@ -285,6 +287,14 @@ int Execution::run(const SessionTask& task, bool is_batch) {
                              stdout_width()));
         if (comparison) fmt::print("{}", verdict_text(*comparison, options_.session.output_folder));
     }
+    if (!options_.html.empty() && !report.interrupted && number != 0) {
+        try {
+            write_page_file(options_.html, {options_.session.output_folder, number}, std::nullopt);
+        } catch (const Error& error) {
+            print(error, false);
+            code = std::max<int>(code, some_failed);
+        }
+    }
     if (report.interrupted) {
         print_stderr("interrupted; all files written so far are complete\n");
         return interrupted;
@@ -510,7 +520,9 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     add_choice("--workflow", batch_options.choice.workflows, "Run only the workflow of this name (may be repeated)");
     add_choice("--only", batch_options.choice.variants, "Run only this variant (may be repeated)");
     add_execute_options(batch, batch_options.execute);
-    batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line");
+    batch.add_option("--html", batch_options.execute.html,
+                     "Write the report as one HTML file after the run, as `scanmill report DIR --html` does");
+    batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line")->excludes("--html");
     options.execute.session.command_line = batch_options.execute.session.command_line = command_line;
 }
 

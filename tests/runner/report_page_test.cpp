@@ -15,8 +15,6 @@ namespace scanmill::test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
@@ -162,6 +160,16 @@ TEST_F(ReportPage, FilesThatAreGone_LeaveOutTheirPicturesAndNothingElse) {
     EXPECT_TRUE(page["cells"][0]["pictures"].empty());
     EXPECT_TRUE(page["cells"][0]["mesh"].is_null());
     EXPECT_THAT(page["notes"].dump(), HasSubstr("a preview is missing"));
+}
+
+TEST_F(ReportPage, ABatchWritesItsPage) {
+    add_scan("a");
+    write_batch();
+    const ProgramResult ran = scanmill({"batch", "b.yaml", "-o", "out", "-q", "--html", "pages/night.html"});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.out, HasSubstr("the page of b is pages/night.html\n"));
+    EXPECT_THAT(content_of(folder_ / "pages/night.html"), HasSubstr("\"batch\":\"b\""));
+    EXPECT_EQ(scanmill({"batch", "b.yaml", "-o", "out", "--html", "x.html", "--json"}).exit_code, 2);
 }
 
 TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {

@@ -148,14 +148,14 @@ TEST_F(Previews, RecordedFileThatIsGone_StillHasItsPreview) {
 
 TEST_F(Previews, VariantsOfAScan_HaveOneCamera) {
     const std::string truth = write_ball("truth.ply").string();
-    const TriangleMesh whole = geodesic_sphere(1, 20);
-    TriangleMesh upper = whole;
+    const TriangleMesh entire = geodesic_sphere(1, 20);
+    TriangleMesh upper = entire;
     Array<Triangle> kept;
-    for (const Triangle& triangle : whole.triangles)
-        if (whole.positions[triangle[0]][2] > -0.3) kept.push_back(triangle);
+    for (const Triangle& triangle : entire.triangles)
+        if (entire.positions[triangle[0]][2] > -0.3) kept.push_back(triangle);
     upper.triangles = Buffer<Triangle>(std::move(kept));
     const std::vector<Preview> previews =
-        make({wish_of(write("whole.ply", whole), truth), wish_of(write("upper.ply", upper), truth)});
+        make({wish_of(write("entire.ply", entire), truth), wish_of(write("upper.ply", upper), truth)});
     const std::array<u32, 4> all = drawn_box(previews[0].picture), half = drawn_box(previews[1].picture);
     EXPECT_NE(content_of(previews[0].picture), content_of(previews[1].picture));
     EXPECT_EQ(half[0], all[0]);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "output/page_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "commands/common.hpp"
+#include "output/reproduce.hpp"
+#include "output/terminal.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/io/atomic_file.hpp"
+#include "scanmill/session/report_page.hpp"
+
+namespace scanmill::runner {
+
+void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
+                     const std::optional<RecordedRun>& against) {
+    std::string page = page_template();
+    FilterLibrary library = open_library();
+    PreviewSettings settings;
+    settings.jobs = std::max(1u, std::thread::hardware_concurrency());
+    settings.worker_command = {"/proc/self/exe", "worker"};
+    const PageDocument document =
+        page_document(which, against, reproducing_command, library, settings, warning_printer());
+    std::error_code ignored;  // the file then cannot be written, either
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+    try {
+        AtomicFile written(file);
+        written.write(page_with(std::move(page), document));
+        written.commit();
+    } catch (const Error& error) {
+        throw error.reworded(fmt::format("'{}' {}", file.string(), error.sentence()));
+    }
+    for (const std::string& note : document.notes) print_warning(note);
+    fmt::print("the page of {} is {}\n", printable_line(document.batch), printable_line(file.string()));
+}
+
+}  // namespace scanmill::runner
