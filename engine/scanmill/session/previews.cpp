@@ -308,7 +308,9 @@ private:
         run(
             to_draw, 1 - share_of_first_pass,
             [&](Item& item, const fs::path& made) { return part_of_deviation(item, made); },
-            [&](Item& item, const fs::path& made) { publish(item, &Preview::deviation, made, deviation_end); });
+            [&](Item& item, const fs::path& made) {
+                publish(item, &Preview::deviation, made / "deviation.png", deviation_end);
+            });
         for (Item* item : chunk)
             if ((!item->is_made && item->is_usable) || std::ranges::find(to_draw, item) != to_draw.end())
                 write_note(*item);
