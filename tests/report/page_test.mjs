@@ -377,10 +377,10 @@ describe("speed", () => {
     for (const [name, limit] of [["nightly", 2], ["many", 5]]) {
         test(`Load_${name}_TakesLessThan${limit}Seconds`, async (context) => {
             const page = await browser.newPage({ viewport: { width: 1400, height: 1000 } });
-            const session = await page.context().newCDPSession(page);
-            await session.send("Performance.enable", { timeDomain: "threadTicks" });
+            const protocol = await page.context().newCDPSession(page);
+            await protocol.send("Performance.enable", { timeDomain: "threadTicks" });
             await page.goto(`${pages}${name}.html`);
-            const { metrics } = await session.send("Performance.getMetrics");
+            const { metrics } = await protocol.send("Performance.getMetrics");
             const processor = metrics.find((metric) => metric.name === "TaskDuration").value;
             const elapsed = await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd / 1000);
             await page.close();
