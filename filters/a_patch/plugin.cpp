@@ -125,7 +125,12 @@ SCANMILL_FILTER() {
         .metric("offset-max", Unit::length, "Longest way of a vertex in the fit, along its normal.")
         .metric("turned", Unit::count, "Normals turned because they opposed a triangle.")
         .metric("flips", Unit::count, "Edges flipped for more even triangles.")
-        .doubts({"there are points, and more than 10 % of the vertices have none near them", "more than 50 % of the points are in no tetrahedron near the surface", "the points are farther from the surface than from the mesh (rms)", "the surface follows the mesh at more than 10 % of the vertices, because no smooth surface fits there", "points are farther than `max-error` from the surface, or the surface from them", "parts of the surface intersect, or the mesh is inside out"})
+        .doubts({"there are points, and more than 10 % of the vertices have none near them",
+                 "more than 50 % of the points are in no tetrahedron near the surface",
+                 "the points are farther from the surface than from the mesh (rms)",
+                 "the surface follows the mesh at more than 10 % of the vertices, because no smooth surface fits there",
+                 "points are farther than `max-error` from the surface, or the surface from them",
+                 "parts of the surface intersect, or the mesh is inside out"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set(
                 "patches",

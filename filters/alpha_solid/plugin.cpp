@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
-#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "alpha_solid/alpha_solid.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 
 using namespace scanmill;
 
@@ -43,7 +43,8 @@ SCANMILL_FILTER() {
         .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline, smaller_is_better)
         .metric("hidden-points", Unit::count, "Points in no cell at all, because weights hide them.", smaller_is_better)
         .metric("triangles", Unit::count, "Triangles of the boundary.", headline)
-        .doubts({"alpha is at least seven times the median edge of the surface", "more than half of the points are inside the solid, not on its surface", signs_of_doubtful_surface})
+        .doubts({"alpha is at least seven times the median edge of the surface",
+                 "more than half of the points are inside the solid, not on its surface", signs_of_doubtful_surface})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             AlphaSolidResult result = alpha_solid(inputs.get<TetMesh>("tets"), params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("tets", std::move(result.tets));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
-#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "cluster_mesh/cluster_mesh.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 
 using namespace scanmill;
 

@@ -27,7 +27,9 @@ SCANMILL_FILTER() {
         .metric("loops", Unit::count, "Boundary loops of the surface.", headline)
         .metric("unused-points", Unit::count, "Points in no triangle.", smaller_is_better)
         .metric("pole-flat", Unit::count, "Points that are flat by the test with poles.")
-        .doubts({"more than 2 % of the points are in no triangle", "more than three boundary loops, and more than one per 1,000 vertices, are shorter than 12 median edges"})
+        .doubts(
+            {"more than 2 % of the points are in no triangle",
+             "more than three boundary loops, and more than one per 1,000 vertices, are shorter than 12 median edges"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             CoconeResult result = cocone(inputs.get<TetMesh>("tets"), params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("features", std::move(result.features));

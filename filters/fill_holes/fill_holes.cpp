@@ -93,11 +93,11 @@ void report_doubts(const FillHolesResult& result, double diagonal, std::size_t t
                    Context& context) {
     if (too_long > 0) {
         const std::string_view unit = symbol(result.mesh.frame.unit);
-        context.doubt(
-            fmt::format("{} longer than the diagonal of the mesh ({:.6g} {}), but filled; the longest has {:.6g} {}. The "
-                        "new triangles invent {} as large as the object; `outer: keep` leaves such loops open",
-                        count_text(too_long, "loop is", "loops are"), diagonal, unit, result.longest, unit,
-                        by_count(too_long, "a surface", "surfaces")));
+        context.doubt(fmt::format(
+            "{} longer than the diagonal of the mesh ({:.6g} {}), but filled; the longest has {:.6g} {}. The "
+            "new triangles invent {} as large as the object; `outer: keep` leaves such loops open",
+            count_text(too_long, "loop is", "loops are"), diagonal, unit, result.longest, unit,
+            by_count(too_long, "a surface", "surfaces")));
     }
     if (share > doubtful_share)
         context.doubt(

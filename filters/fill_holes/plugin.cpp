@@ -74,7 +74,9 @@ SCANMILL_FILTER() {
                 "Loops within the limits that stay open because any triangulation would intersect "
                 "something.",
                 smaller_is_better)
-        .doubts({"more than 5 % of the surface is filled", "a filled loop is longer than the diagonal of the mesh", "loops were closed all together, because one has no filling of its own", "a loop that should be filled stays open", sign_of_doubtful_handles})
+        .doubts({"more than 5 % of the surface is filled", "a filled loop is longer than the diagonal of the mesh",
+                 "loops were closed all together, because one has no filling of its own",
+                 "a loop that should be filled stays open", sign_of_doubtful_handles})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", fill_holes(inputs.get<TriangleMesh>("mesh"), params, context).mesh);
         });

@@ -55,7 +55,10 @@ SCANMILL_FILTER() {
                 "How well the surfaces determine the least determined direction of motion; below 0.002 they do not, "
                 "and the result is doubtful.",
                 headline, larger_is_better)
-        .doubts({"less than 30 % of the source lies on the target", "the surfaces slide: they do not determine all six directions of motion", "the iterations end before the motion converges", "half of the residuals are above 40 % of `max-distance`"})
+        .doubts({"less than 30 % of the source lies on the target",
+                 "the surfaces slide: they do not determine all six directions of motion",
+                 "the iterations end before the motion converges",
+                 "half of the residuals are above 40 % of `max-distance`"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("transform", Transforms(refined(inputs, params, context).transform));
         });

@@ -117,7 +117,8 @@ Filter declaration() {
         .metric("alignment-rms", Unit::length, "Distance that the alignment left, from the transform.",
                 smaller_is_better)
         .metric("diagonal", Unit::length, "Diagonal of the bounding box of the nominal.");
-    filter.doubts({"more than 50 % of the points are too far from the nominal to count, or have no sure sign", "the nominal is inside out, or its triangles face different sides"});
+    filter.doubts({"more than 50 % of the points are too far from the nominal to count, or have no sure sign",
+                   "the nominal is inside out, or its triangles face different sides"});
     filter.run([](const Inputs& inputs, const P& params, Context& context) {
         const auto& nominal = inputs.get<TriangleMesh>("nominal");
         const auto* transforms = inputs.find<Transforms>("transform");

@@ -98,7 +98,9 @@ SCANMILL_FILTER() {
         .metric("overlap-seconds", Unit::seconds, "Time to find the overlap facets.")
         .metric("segmentation-seconds", Unit::seconds, "Time to find the groups and choose those to replace.")
         .metric("reconstruction-seconds", Unit::seconds, "Time to make the new surface.")
-        .doubts({"the topology is not that of the kept parts joined with the surfaces of the clouds", "more than 5 % of the clouds' points are not on the surface (not with `noise: big-balls`)", "more than 1 % of the new surface is farther than a spacing from the clouds and from what was kept"})
+        .doubts({"the topology is not that of the kept parts joined with the surfaces of the clouds",
+                 "more than 5 % of the clouds' points are not on the surface (not with `noise: big-balls`)",
+                 "more than 1 % of the new surface is farther than a spacing from the clouds and from what was kept"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             MeshUpdateResult result =
                 mesh_update(inputs.get<TriangleMesh>("mesh"), inputs.list<PointCloud>("points"), params, context);

@@ -59,7 +59,11 @@ SCANMILL_FILTER() {
                 "Points whose neighbours lie on one line, or most of whose neighbours have normals on the other side.",
                 headline, smaller_is_better)
         .metric("components", Unit::count, "Connected components of the neighbourhoods.", headline)
-        .doubts({"at more than 5 % of the points the neighbours lie on a line, or most of them have normals on the other side", "more than 5 % of the points are in connected components whose side is a guess", "the column `normal` contradicts itself at more than 5 % of the points", "the neighbours of most points form no surface"})
+        .doubts({"at more than 5 % of the points the neighbours lie on a line, or most of them have normals on the "
+                 "other side",
+                 "more than 5 % of the points are in connected components whose side is a guess",
+                 "the column `normal` contradicts itself at more than 5 % of the points",
+                 "the neighbours of most points form no surface"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", normals(inputs.get<PointCloud>("points"), params, context).points);
         });

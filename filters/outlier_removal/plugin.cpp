@@ -50,7 +50,8 @@ SCANMILL_FILTER() {
         .metric("scattered", Unit::count,
                 "Points in clusters that are scattered over a volume; none with `min-component: 0`.")
         .metric("components", Unit::count, "Connected components that are kept; none with `min-component: 0`.")
-        .doubts({"more than 10 % of the points are outliers", "the outliers cover more than 10 % of the area of the surface"})
+        .doubts({"more than 10 % of the points are outliers",
+                 "the outliers cover more than 10 % of the area of the surface"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", outlier_removal(inputs.get<PointCloud>("points"), params, context).points);
         });

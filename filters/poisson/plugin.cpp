@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
-#include "scanmill/geometry/mesh/handles.hpp"
 #include "poisson/poisson.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
 
 using namespace scanmill;
 
@@ -54,7 +54,10 @@ SCANMILL_FILTER() {
         .metric("cracks", Unit::count, "Holes of a few edges that PCL leaves in the surface and that were filled.")
         .metric("loops", Unit::count, "Boundary loops of the surface.", headline)
         .metric("cell", Unit::length, "Edge of the smallest cell that the octree may have.")
-        .doubts({"more than 5 % of the area is far from all points", "more than 5 % of the points are far from the surface", "at more than 5 % of the vertices the surface faces away from the normals of the nearest points", sign_of_doubtful_handles})
+        .doubts({"more than 5 % of the area is far from all points",
+                 "more than 5 % of the points are far from the surface",
+                 "at more than 5 % of the vertices the surface faces away from the normals of the nearest points",
+                 sign_of_doubtful_handles})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", poisson(inputs.get<PointCloud>("points"), params, context).mesh);
         });

@@ -62,7 +62,8 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("repeated", Unit::count,
                 "Touched points that were left out of a line, because another point of the same place is in it.")
-        .doubts({"the normals at the contacts of the median pair are less than half, or more than 1.5 times, as far apart as its approaches"})
+        .doubts({"the normals at the contacts of the median pair are less than half, or more than 1.5 times, as far "
+                 "apart as its approaches"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud& touches = inputs.get<PointCloud>("points");
             const auto* plan = inputs.find<ProbePlan>("plan");

@@ -87,7 +87,10 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("missing-lines", Unit::count, "Segments of `lines` that the surface does not contain.",
                 smaller_is_better)
-        .doubts({"more than 2 % of the points are in no triangle", "there is more than one crease per 20 edges (of more than 10,000), as on noisy scans", "boundary loops lie where the object is thinner than three voxels", "normals reverse within the surface", "segments of `lines` are missing in the mesh"})
+        .doubts({"more than 2 % of the points are in no triangle",
+                 "there is more than one crease per 20 edges (of more than 10,000), as on noisy scans",
+                 "boundary loops lie where the object is thinner than three voxels",
+                 "normals reverse within the surface", "segments of `lines` are missing in the mesh"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const auto& points = inputs.get<PointCloud>("points");
             const auto* lines = inputs.find<FeatureGraph>("lines");

@@ -74,7 +74,10 @@ SCANMILL_FILTER() {
                 headline, smaller_is_better)
         .metric("rival", Unit::ratio, "With a target: share of the points that lie on it in the next best pose.",
                 smaller_is_better)
-        .doubts({"views were left out: they fit nowhere surely, or the file of poses refuses them", "views fit the others better elsewhere than at the poses of the file", "the views overlap too little to find or test their poses", "`whole-views` is false, and no other view confirms a pair"})
+        .doubts({"views were left out: they fit nowhere surely, or the file of poses refuses them",
+                 "views fit the others better elsewhere than at the poses of the file",
+                 "the views overlap too little to find or test their poses",
+                 "`whole-views` is false, and no other view confirms a pair"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const auto clouds = inputs.list<PointCloud>("points");
             if (const auto* target = inputs.find<TriangleMesh>("target"))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
-#include "scanmill/geometry/mesh/handles.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
 #include "sculpt/sculpt.hpp"
 
 using namespace scanmill;

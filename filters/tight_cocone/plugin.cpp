@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/plugin.hpp"
-#include "scanmill/geometry/mesh/handles.hpp"
-#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "cocone/parameters.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/handles.hpp"
 #include "tight_cocone/parameters.hpp"
 
 using namespace scanmill;
@@ -35,7 +35,9 @@ SCANMILL_FILTER() {
         .metric("removed-blobs", Unit::count, "Connected sets of good points that lie inside the solid.")
         .metric("mended-vertices", Unit::count,
                 "Vertices where the boundary was not a manifold before cells were added.", smaller_is_better)
-        .doubts({"more than 10 % of the area is not in the surface of `cocone`", "more than 2 % of the points are not on the surface (not with `noise: big-balls`)", signs_of_doubtful_surface, sign_of_doubtful_handles})
+        .doubts({"more than 10 % of the area is not in the surface of `cocone`",
+                 "more than 2 % of the points are not on the surface (not with `noise: big-balls`)",
+                 signs_of_doubtful_surface, sign_of_doubtful_handles})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             TightCoconeResult result = tight_cocone(inputs.get<TetMesh>("tets"), params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("tets", std::move(result.tets));

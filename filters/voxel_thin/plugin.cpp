@@ -65,7 +65,9 @@ SCANMILL_FILTER() {
         .metric("undetermined", Unit::count, "Points whose neighbours lie near a line and determine no curvature.")
         .metric("smallest-bin", Unit::length, "Smallest edge among octree leaves that hold several points.")
         .metric("largest-bin", Unit::length, "Largest edge among octree leaves that hold several points.")
-        .doubts({"fewer than 100 of at least 10,000 points stay", "more than 10 % of the points are in voxels that hold 1 % of them or more, as where one view is in another unit"})
+        .doubts({"fewer than 100 of at least 10,000 points stay",
+                 "more than 10 % of the points are in voxels that hold 1 % of them or more, as where one view is in "
+                 "another unit"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", voxel_thin(inputs.get<PointCloud>("points"), params, context).points);
         })

@@ -80,17 +80,18 @@ int acknowledge(const Options& options) {
         if (is_named) chosen.push_back(&cell);
     }
     if (chosen.empty()) {
-        const std::string hint = doubtful.empty() ? "no cell of the run has doubts"
-                                                  : "cells with doubts are " + enumerated(doubtful);
-        throw is_cell ? Error("the cell '{}' of run {} has no doubts", options.acknowledge, comparison.run.id).hint(hint)
-                      : Error("run {} has no cell '{}'{}", comparison.run.id, options.acknowledge,
-                              did_you_mean(options.acknowledge, doubtful))
-                            .hint(hint);
+        const std::string hint =
+            doubtful.empty() ? "no cell of the run has doubts" : "cells with doubts are " + enumerated(doubtful);
+        throw is_cell
+            ? Error("the cell '{}' of run {} has no doubts", options.acknowledge, comparison.run.id).hint(hint)
+            : Error("run {} has no cell '{}'{}", comparison.run.id, options.acknowledge,
+                    did_you_mean(options.acknowledge, doubtful))
+                  .hint(hint);
     }
     RunRecords records = records_to_change(options.folder);
     for (const CellComparison* cell : chosen) {
-        records.acknowledge({comparison.batch, cell->workflow, cell->scan, cell->variant, "", options.who, options.why,
-                             cell->doubts});
+        records.acknowledge(
+            {comparison.batch, cell->workflow, cell->scan, cell->variant, "", options.who, options.why, cell->doubts});
         fmt::print("{} of {} {} known now\n", count_text(cell->doubts.size(), "doubt", "doubts"),
                    printable_line(cell_name(*cell)), by_count(cell->doubts.size(), "is", "are"));
     }
@@ -125,10 +126,11 @@ int report(const Options& options) {
     if (options.json)
         print_json(report_json(comparison));
     else
-        fmt::print("{}", options.format == "junit"      ? junit_xml(comparison, options.strict)
-                         : options.format == "markdown"
-                             ? markdown(comparison, options.metric.empty() ? default_metric(comparison) : options.metric)
-                             : comparison_text(comparison, options.folder, options.metric, stdout_width()));
+        fmt::print("{}",
+                   options.format == "junit" ? junit_xml(comparison, options.strict)
+                   : options.format == "markdown"
+                       ? markdown(comparison, options.metric.empty() ? default_metric(comparison) : options.metric)
+                       : comparison_text(comparison, options.folder, options.metric, stdout_width()));
     return exit_code_of(comparison, options.strict);
 }
 

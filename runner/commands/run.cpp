@@ -37,8 +37,7 @@ struct ExecuteOptions {
     SessionSettings session;
     CacheOptions cache;
     std::uint64_t seed = 0;
-    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false,
-         is_wide = false;
+    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false, is_wide = false;
     std::filesystem::path html;  ///< batches only
 };
 
@@ -269,7 +268,8 @@ int Execution::run(const SessionTask& task, bool is_batch) {
         // Known doubts do not count, so the comparison decides whether a doubtful result is an error.
         if (options_.strict && report.outcome() == Outcome::doubtful) code = done;
         comparison = judge(task, number, code);
-        if (options_.strict && report.outcome() == Outcome::doubtful && !comparison) code = std::max<int>(code, some_failed);
+        if (options_.strict && report.outcome() == Outcome::doubtful && !comparison)
+            code = std::max<int>(code, some_failed);
     }
 
     if (events) {
@@ -282,9 +282,8 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     } else if (options_.json) {
         print_json(report_json(graph, report));
     } else {
-        fmt::print("{}",
-                   run_table(graph, report, options_.is_wide ? TableExtent::everything : TableExtent::result,
-                             stdout_width()));
+        fmt::print("{}", run_table(graph, report, options_.is_wide ? TableExtent::everything : TableExtent::result,
+                                   stdout_width()));
         if (comparison) fmt::print("{}", verdict_text(*comparison, options_.session.output_folder));
     }
     if (!options_.html.empty() && !report.interrupted && number != 0) {

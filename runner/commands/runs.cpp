@@ -234,12 +234,12 @@ struct Options {
 };
 
 int prune_runs(const Options& options) {
-    if (!options.show.empty())
-        throw Error("--prune removes runs, and `show` prints one").hint("give one of them");
+    if (!options.show.empty()) throw Error("--prune removes runs, and `show` prints one").hint("give one of them");
     if (!options.keep || *options.keep < 1)
         throw Error("--prune needs the number of runs to keep, at least 1")
             .hint("scanmill runs DIR --prune --keep 30 keeps the newest 30 runs of every workflow and batch");
-    const Pruned pruned = prune(options.folder, static_cast<std::size_t>(*options.keep), options.dry_run, options.command_line, print_warning);
+    const Pruned pruned = prune(options.folder, static_cast<std::size_t>(*options.keep), options.dry_run,
+                                options.command_line, print_warning);
     if (options.json) {
         PrunedDocument document{pruned.runs, {}, pruned.bytes, pruned.records_before, pruned.records_after};
         for (const std::filesystem::path& file : pruned.files) document.files.push_back(file.string());
@@ -285,9 +285,10 @@ void add_runs(CLI::App& app, Action& chosen, const std::vector<std::string>& com
     command.add_option("DIR", options.folder, "The output folder of the runs")->required();
     command.add_option("show", options.show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
     command.add_option("ID", options.id, "The run's number in the list");
-    command.add_flag("--prune", options.prunes,
-                     "Remove old runs from the records, and the files that only they wrote; needs --keep. Accepted runs "
-                     "stay");
+    command.add_flag(
+        "--prune", options.prunes,
+        "Remove old runs from the records, and the files that only they wrote; needs --keep. Accepted runs "
+        "stay");
     command.add_option("--keep", options.keep, "How many runs of every workflow and batch --prune keeps, the newest");
     command.add_flag("--dry-run", options.dry_run, "Print what --prune would remove, and remove nothing");
     options.command_line = command_line;

@@ -11,9 +11,9 @@
 namespace scanmill::runner {
 
 /// Returns about a screen of text: the verdict, the counts, the runs, version and machine; per rule and variant the
-/// number of cells and the median change; the worst changes; what failed and why; the commands that reproduce failed and
-/// regressed cells; and what prints the rest. Long lists are cut. With `metric`, a table of this metric with a row per
-/// scan replaces what follows the machine. `width`: columns of the terminal; empty: no limit.
+/// number of cells and the median change; the worst changes; what failed and why; the commands that reproduce failed
+/// and regressed cells; and what prints the rest. Long lists are cut. With `metric`, a table of this metric with a row
+/// per scan replaces what follows the machine. `width`: columns of the terminal; empty: no limit.
 std::string comparison_text(const Comparison& comparison, const std::filesystem::path& folder,
                             const std::string& metric, std::optional<std::size_t> width);
 

@@ -128,8 +128,7 @@ struct NumberColumn {
                 is_declared = is_declared || number->lengths != LengthUnit::unknown;
             }
         has_several_units = units.size() > 1;
-        if (units.size() == 1 && is_declared && !units.begin()->empty())
-            header += fmt::format(" ({})", *units.begin());
+        if (units.size() == 1 && is_declared && !units.begin()->empty()) header += fmt::format(" ({})", *units.begin());
     }
 };
 
@@ -229,10 +228,9 @@ std::string summary_text(const RunGraph& graph, const RunReport& report, std::si
     std::string text;
     if (doubtful > 0)
         text += fmt::format("{} of {} doubtful; the reasons are on stderr\n", doubtful, graph.cells.size());
-    const std::string broken =
-        rows < graph.cells.size()
-            ? fmt::format(" ({} could not be read)", count_text(unreadable.size(), "file", "files"))
-            : "";
+    const std::string broken = rows < graph.cells.size() ? fmt::format(" ({} could not be read)",
+                                                                       count_text(unreadable.size(), "file", "files"))
+                                                         : "";
     if (failed > 0)
         text += fmt::format("{} of {} failed{}; the reasons are on stderr\n", failed, graph.cells.size(), broken);
     if (!evidence.empty())
@@ -305,8 +303,8 @@ std::string run_table(const RunGraph& graph, const RunReport& report, TableExten
     const FittedTable fitted = table.fitted(std::min(width.value_or(most_columns), most_columns));
     std::string text = fitted.text;
     if (rows.size() < all.size())
-        text += fmt::format("and {}; --wide prints all\n",
-                            count_text(all.size() - rows.size(), "more cell", "more cells"));
+        text +=
+            fmt::format("and {}; --wide prints all\n", count_text(all.size() - rows.size(), "more cell", "more cells"));
     if (fitted.left_out > 0)
         text += fmt::format("{} left out; --wide prints all\n", count_text(fitted.left_out, "column", "columns"));
     return text + summary_text(graph, report, all.size());

@@ -147,9 +147,7 @@ std::string for_stderr(std::string text) {
     return for_locale(std::move(text));
 }
 
-void print_warning(std::string_view text) {
-    print_stderr("{}\n", for_stderr("warning: " + printable_line(text)));
-}
+void print_warning(std::string_view text) { print_stderr("{}\n", for_stderr("warning: " + printable_line(text))); }
 
 void print_json(const nlohmann::ordered_json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));

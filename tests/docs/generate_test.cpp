@@ -30,12 +30,11 @@ protected:
     }
     /// The exit code; `said_` is what it printed.
     int run(const std::string& filters, const std::string& arguments = "") {
-        const fs::path program =
-            folder_.write("built/bin/scanmill",
-                          "#!/bin/sh\nfilters='" + filters +
-                              "'\ncase $1 in\n  list) printf '%s  points\\n' filter $filters ;;\n"
-                              "  schema) mkdir -p \"$3\" && echo new >\"$3/workflow.schema.json\" ;;\n"
-                              "  docs) shift 2; sed -i 's/^old$/new/' \"$@\" ;;\nesac\n");
+        const fs::path program = folder_.write(
+            "built/bin/scanmill", "#!/bin/sh\nfilters='" + filters +
+                                      "'\ncase $1 in\n  list) printf '%s  points\\n' filter $filters ;;\n"
+                                      "  schema) mkdir -p \"$3\" && echo new >\"$3/workflow.schema.json\" ;;\n"
+                                      "  docs) shift 2; sed -i 's/^old$/new/' \"$@\" ;;\nesac\n");
         fs::permissions(program, fs::perms::owner_all);
         const int status = std::system(
             ("cd '" + folder_.path().string() + "' && bash tools/generate.sh built " + arguments + " >said 2>&1")

@@ -47,7 +47,8 @@ std::vector<std::string> pages_with_commands() {
 /// `docs/how-to/make-a-print.md` as `how_to_make_a_print`.
 std::string page_test_name(const testing::TestParamInfo<std::string>& info) {
     std::string name = fs::path(info.param).replace_extension().string().substr(std::string("docs/").size());
-    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     return name;
 }
 

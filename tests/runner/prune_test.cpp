@@ -28,7 +28,8 @@ protected:
             folder_.write(std::string(name) + ".xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
         folder_.write("w.yaml",
                       "scanmill: 1\nname: w\ninputs: {scan: points}\nparameters: {size: 0.1 u}\nsteps:\n"
-                      "  - voxel-thin: {bin-size: $size}\n    expect: {kept: \"> 3\"}\noutputs: {'sub/{scan}.ply': voxel-thin}\n");
+                      "  - voxel-thin: {bin-size: $size}\n    expect: {kept: \"> 3\"}\noutputs: {'sub/{scan}.ply': "
+                      "voxel-thin}\n");
     }
     ProgramResult scanmill(const std::vector<std::string>& arguments) {
         return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
@@ -65,7 +66,8 @@ TEST_F(Prune, OldRunsGo_WithTheFilesThatNoOtherRunNames) {
     EXPECT_FALSE(exists("sub/c d:é.ply.json"));
     EXPECT_TRUE(exists("sub/a.ply")) << "run 3 names it, too";
     EXPECT_TRUE(exists("sub/b.ply"));
-    EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).err, HasSubstr("there is no run 1 in 'out/scanmill.sqlite'; it has the runs 3 to 4"));
+    EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).err,
+                HasSubstr("there is no run 1 in 'out/scanmill.sqlite'; it has the runs 3 to 4"));
     EXPECT_EQ(scanmill({"runs", "out", "show", "3"}).exit_code, 0);
     run("a.xyz");
     EXPECT_THAT(runs(), ElementsAre(3, 4, 5)) << "numbers are not used again";

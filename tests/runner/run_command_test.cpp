@@ -271,9 +271,10 @@ TEST_F(RunCommandUnits, DifferentUnits_AreInTheCells) {
 }
 
 TEST_F(RunCommandUnits, AUnitForNoScan_IsRefused) {
-    folder_.write("made.yaml",
-                  "scanmill: 1\nname: made\nsteps:\n  - virtual-scan: {shape: sphere, size: 1 u, views: [1], resolution: "
-                  "0.1 u}\noutputs: {'made.ply': virtual-scan}\n");
+    folder_.write(
+        "made.yaml",
+        "scanmill: 1\nname: made\nsteps:\n  - virtual-scan: {shape: sphere, size: 1 u, views: [1], resolution: "
+        "0.1 u}\noutputs: {'made.ply': virtual-scan}\n");
     const ProgramResult refused =
         scanmill_program({"run", "made.yaml", "-o", "out", "--unit", "mm"}, {.folder = folder_.path()});
     EXPECT_EQ(refused.exit_code, 2);

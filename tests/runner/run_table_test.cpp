@@ -102,8 +102,8 @@ TEST(RunTableOf10000Cells, ShowsFiftyRows_TheWorstAmongThem) {
     const std::string table = runner::run_table(run.graph, run.report, runner::TableExtent::result);
     EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 50 + 1 + 2);
     EXPECT_THAT(table, AllOf(HasSubstr("\n9998.ply  doubtful"), HasSubstr("\n9999.ply  failed"),
-                             HasSubstr("and 9950 more cells; --wide prints all\n"),
-                             HasSubstr("1 of 10000 doubtful"), HasSubstr("1 of 10000 failed")));
+                             HasSubstr("and 9950 more cells; --wide prints all\n"), HasSubstr("1 of 10000 doubtful"),
+                             HasSubstr("1 of 10000 failed")));
     EXPECT_EQ(std::ranges::count(runner::run_table(run.graph, run.report, runner::TableExtent::everything), '\n'),
               1 + 10'000 + 2);
 }
@@ -112,7 +112,8 @@ TEST(RunTableOf40Columns, LeavesOutColumns_AndSaysSo) {
     const MadeRun run(3);
     const std::string table = runner::run_table(run.graph, run.report, runner::TableExtent::result, 30);
     EXPECT_LE(widest(table.substr(0, table.find("1 of"))), 40u);
-    EXPECT_THAT(table, AllOf(StartsWith("scan   outcome   files\n"), HasSubstr("1 column left out; --wide prints all")));
+    EXPECT_THAT(table,
+                AllOf(StartsWith("scan   outcome   files\n"), HasSubstr("1 column left out; --wide prints all")));
 }
 
 }  // namespace

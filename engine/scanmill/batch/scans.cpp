@@ -276,7 +276,8 @@ const ScanPose& pose_of(const fs::path& scan, const std::vector<ScanPose>& poses
                 did_you_mean(name, names));
 }
 
-/// Whether a run wrote the file beside its outputs: the records, the lock, or the description of an output that is there.
+/// Whether a run wrote the file beside its outputs: the records, the lock, or the description of an output that is
+/// there.
 bool is_own_file(const fs::path& file) {
     const std::string name = file.filename().string();
     if (name.starts_with(records_file) || name == "scanmill.lock") return true;

@@ -599,10 +599,10 @@ Comparison compare(const RunDetails& run, const Baseline* baseline, const Comman
     for (const std::size_t i : in_plan_order(run.cells)) {
         const CellRecord& cell = run.cells[i];
         const CellRecord* accepted = accepted_cells.find(cells.key(i));
-        CellComparison& judged = comparison.cells.emplace_back(
-            CellJudge(comparison.gate, cell, steps)
-                .judged(accepted, accepted_steps, pools.of(cells.key(i)),
-                        known[{cell.workflow, std::get<1>(cells.key(i)), cell.variant}]));
+        CellComparison& judged =
+            comparison.cells.emplace_back(CellJudge(comparison.gate, cell, steps)
+                                              .judged(accepted, accepted_steps, pools.of(cells.key(i)),
+                                                      known[{cell.workflow, std::get<1>(cells.key(i)), cell.variant}]));
         judged.scan = std::get<1>(cells.key(i));
         const bool is_fine = judged.verdict == Verdict::passed || judged.verdict == Verdict::is_new;
         if (accepted && !is_fine) judged.causes = causes_of(cell, steps, *accepted, accepted_steps);

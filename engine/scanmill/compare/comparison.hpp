@@ -179,7 +179,8 @@ struct Comparison {
 
     /// Number of cells whose doubts are all acknowledged.
     std::size_t known() const {
-        return static_cast<std::size_t>(std::ranges::count_if(cells, [](const auto& cell) { return cell.known.has_value(); }));
+        return static_cast<std::size_t>(
+            std::ranges::count_if(cells, [](const auto& cell) { return cell.known.has_value(); }));
     }
     std::size_t count(Verdict of) const { return counts[static_cast<std::size_t>(of)]; }
     /// Whether a cell regressed or is missing.
@@ -197,10 +198,9 @@ struct Baseline {
 /// Returns the command that runs the cell again. `scan` is the scan's path relative to the batch's folder.
 using CommandFor = std::function<std::string(const RunDetails& run, const CellRecord& cell, const std::string& scan)>;
 
-/// Compares `run` with `baseline`. Without a baseline, cells that are not failed, missing or doubtful are new. A cell is
-/// not doubtful if `acknowledged` has all of its doubts.
-/// `command` is called for the cells that are neither passed nor new. Throws Error for a recorded rule for costs that
-/// cannot be read. Cost: linear in the recorded rows.
+/// Compares `run` with `baseline`. Without a baseline, cells that are not failed, missing or doubtful are new. A cell
+/// is not doubtful if `acknowledged` has all of its doubts. `command` is called for the cells that are neither passed
+/// nor new. Throws Error for a recorded rule for costs that cannot be read. Cost: linear in the recorded rows.
 Comparison compare(const RunDetails& run, const Baseline* baseline, const CommandFor& command = {},
                    const std::vector<Acknowledgement>& acknowledged = {});
 

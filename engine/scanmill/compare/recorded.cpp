@@ -107,8 +107,8 @@ Comparison compare_recorded(const RecordedRun& which, const std::optional<Record
     const std::int64_t id = ended_run(runs, which);
     const RunDetails run = records.run(id);
     const std::optional<Baseline> baseline = baseline_for(run, records, which.folder, against);
-    Comparison comparison = compare(run, baseline ? &*baseline : nullptr, command,
-                                    records.acknowledgements(run.start.workflow));
+    Comparison comparison =
+        compare(run, baseline ? &*baseline : nullptr, command, records.acknowledgements(run.start.workflow));
     if (!which.run)
         for (const RunSummary& later : runs)
             if (later.id > id)

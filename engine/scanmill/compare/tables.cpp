@@ -120,8 +120,8 @@ std::string median_text(const RuleRow& row) {
     if (is_cost(row.metric)) return cost_text(row.metric, median);
     const CellValue& first = row.shown.front();
     const Metric metric{"", median, first.metric.unit};
-    const bool has_one_unit = std::ranges::all_of(
-        row.shown, [&](const CellValue& value) { return value.lengths == first.lengths; });
+    const bool has_one_unit =
+        std::ranges::all_of(row.shown, [&](const CellValue& value) { return value.lengths == first.lengths; });
     return has_one_unit ? display(metric, first.lengths) : display(metric);
 }
 
@@ -297,11 +297,12 @@ ReportTable known_table(const Comparison& comparison, std::size_t most) {
     const bool with_workflow = has_several_workflows(comparison);
     for (const CellComparison& cell : comparison.cells) {
         if (!cell.known || table.rows.size() == most) continue;
-        table.rows.push_back({cell.scan, variant_text(cell, with_workflow), cell.known->who, cell.known->at.substr(0, 10),
-                              cell.known->why});
+        table.rows.push_back({cell.scan, variant_text(cell, with_workflow), cell.known->who,
+                              cell.known->at.substr(0, 10), cell.known->why});
     }
     if (comparison.known() > table.rows.size())
-        table.rest = fmt::format("and {}", count_text(comparison.known() - table.rows.size(), "more cell", "more cells"));
+        table.rest =
+            fmt::format("and {}", count_text(comparison.known() - table.rows.size(), "more cell", "more cells"));
     return table;
 }
 

@@ -42,7 +42,8 @@ ReportTable change_table(const Comparison& comparison, std::size_t most);
 /// change_table() shows. Variants of a scan with the same text share a row. The table has at most `most` rows.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
-/// A table of the cells whose doubts are all acknowledged: scan, variant, who, when and why. It has at most `most` rows.
+/// A table of the cells whose doubts are all acknowledged: scan, variant, who, when and why. It has at most `most`
+/// rows.
 ReportTable known_table(const Comparison& comparison, std::size_t most);
 
 /// A table of one metric with a row per scan and a column per variant, or with a row per variant if there is only one

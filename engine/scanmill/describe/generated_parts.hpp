@@ -14,8 +14,8 @@ namespace scanmill {
 /// - `filters LINK`: a table of all filters. LINK is the page of each, with `{filter}` for its name and `{folder}` for
 ///   its name with underscores;
 /// - `doubts LINK`: a table that lists when filters doubt their results.
-/// Throws Error, with the number of the line, for another WHAT, for an unknown filter, for a part without an end, and if
-/// there is no such part.
+/// Throws Error, with the number of the line, for another WHAT, for an unknown filter, for a part without an end, and
+/// if there is no such part.
 std::string with_generated_parts(std::string_view page, const FilterLibrary& library);
 
 }  // namespace scanmill

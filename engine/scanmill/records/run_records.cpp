@@ -276,11 +276,11 @@ RunSummary RunRecords::summary(std::int64_t id) const {
 
 std::vector<RecordedFile> RunRecords::files() const {
     return about(database_->file, [&] {
-        SQLite::Statement rows(
-            database_->sqlite,
-            "SELECT cell.parent, CASE output.evidence WHEN '' THEN output.file ELSE output.evidence END, output.sha256, "
-            "output.bytes FROM cell_outputs AS output JOIN cell ON cell.id = output.parent "
-            "WHERE output.outcome = 'ok' OR output.evidence <> '' ORDER BY cell.parent, output.id");
+        SQLite::Statement rows(database_->sqlite,
+                               "SELECT cell.parent, CASE output.evidence WHEN '' THEN output.file ELSE output.evidence "
+                               "END, output.sha256, "
+                               "output.bytes FROM cell_outputs AS output JOIN cell ON cell.id = output.parent "
+                               "WHERE output.outcome = 'ok' OR output.evidence <> '' ORDER BY cell.parent, output.id");
         std::vector<RecordedFile> files;
         while (rows.executeStep())
             files.push_back({rows.getColumn(0).getInt64(), rows.getColumn(1).getString(), rows.getColumn(2).getString(),

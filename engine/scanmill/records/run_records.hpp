@@ -2,11 +2,11 @@
 #pragma once
 /// The history of runs: one SQLite file per output folder, to which every run appends.
 ///
-/// Rows are never changed, and removed only with their whole run. A run without an end is still running or was killed. The file may be on a network
-/// file system, because it uses a rollback journal. Any SQLite program can read it. Its tables derive from the fields
-/// of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with other fields refuses the file.
-/// The tables `gate_verdict` and `acknowledgement` are created when they get their first rows; files without them are
-/// accepted.
+/// Rows are never changed, and removed only with their whole run. A run without an end is still running or was killed.
+/// The file may be on a network file system, because it uses a rollback journal. Any SQLite program can read it. Its
+/// tables derive from the fields of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with
+/// other fields refuses the file. The tables `gate_verdict` and `acknowledgement` are created when they get their first
+/// rows; files without them are accepted.
 
 #include <filesystem>
 #include <functional>
@@ -36,9 +36,10 @@ struct Acknowledgement {
 };
 constexpr auto fields(const Acknowledgement*) {
     using R = Acknowledgement;
-    return std::tuple{field("batch", &R::batch), field("workflow", &R::workflow), field("scan", &R::scan),
-                      field("variant", &R::variant), field("at", &R::at), field("who", &R::who),
-                      field("why", &R::why), field("doubts", &R::doubts)};
+    return std::tuple{field("batch", &R::batch), field("workflow", &R::workflow),
+                      field("scan", &R::scan),   field("variant", &R::variant),
+                      field("at", &R::at),       field("who", &R::who),
+                      field("why", &R::why),     field("doubts", &R::doubts)};
 }
 
 /// The costs of a cell in earlier runs.
@@ -98,7 +99,8 @@ public:
     std::vector<Acceptance> acceptances() const;
     /// The newest acceptance of this batch that was not revoked.
     std::optional<Acceptance> baseline(const std::string& batch) const;
-    /// Records that these doubts of a cell are known; `at` is set to now. Earlier acknowledgements of the cell hold, too.
+    /// Records that these doubts of a cell are known; `at` is set to now. Earlier acknowledgements of the cell hold,
+    /// too.
     void acknowledge(Acknowledgement acknowledgement);
     /// The acknowledgements of the cells of this batch, oldest first.
     std::vector<Acknowledgement> acknowledgements(const std::string& batch) const;

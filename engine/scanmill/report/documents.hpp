@@ -50,13 +50,13 @@ struct ListedRun {
 };
 constexpr auto fields(const ListedRun*) {
     using R = ListedRun;
-    return std::tuple{field("summary", &R::summary).flat(),
-                      field("killed", &R::killed, "The run ended without an outcome.").optional(),
-                      field("accepted", &R::accepted).optional(),
-                      field("bytes", &R::bytes,
-                            "Bytes of the files that the run wrote, that are there, and that no later run names."),
-                      field("gone", &R::gone, "Files that the run wrote, that are gone, and that no later run names.")
-                          .optional()};
+    return std::tuple{
+        field("summary", &R::summary).flat(),
+        field("killed", &R::killed, "The run ended without an outcome.").optional(),
+        field("accepted", &R::accepted).optional(),
+        field("bytes", &R::bytes,
+              "Bytes of the files that the run wrote, that are there, and that no later run names."),
+        field("gone", &R::gone, "Files that the run wrote, that are gone, and that no later run names.").optional()};
 }
 
 /// What `scanmill runs DIR --prune` removed, or would remove.

@@ -45,8 +45,9 @@ struct PageRule {
 };
 constexpr auto fields(const PageRule*) {
     using R = PageRule;
-    return std::tuple{field("metric", &R::metric),   field("rule", &R::rule),     field("variant", &R::variant),
-                      field("cells", &R::cells),     field("median", &R::median), field("median-change", &R::median_change),
+    return std::tuple{field("metric", &R::metric),      field("rule", &R::rule),
+                      field("variant", &R::variant),    field("cells", &R::cells),
+                      field("median", &R::median),      field("median-change", &R::median_change),
                       field("regressed", &R::regressed)};
 }
 
@@ -72,10 +73,10 @@ struct PageStep {
 };
 constexpr auto fields(const PageStep*) {
     using R = PageStep;
-    return std::tuple{field("label", &R::label),     field("filter", &R::filter),   field("version", &R::version),
-                      field("seconds", &R::seconds), field("cpu-seconds", &R::cpu_seconds),
-                      field("memory", &R::memory),   field("origin", &R::origin),   field("outcome", &R::outcome),
-                      field("parameters", &R::parameters)};
+    return std::tuple{
+        field("label", &R::label),     field("filter", &R::filter),           field("version", &R::version),
+        field("seconds", &R::seconds), field("cpu-seconds", &R::cpu_seconds), field("memory", &R::memory),
+        field("origin", &R::origin),   field("outcome", &R::outcome),         field("parameters", &R::parameters)};
 }
 
 struct PageOutput {
@@ -151,9 +152,9 @@ struct PageChange {
 };
 constexpr auto fields(const PageChange*) {
     using R = PageChange;
-    return std::tuple{field("cell", &R::cell),     field("what", &R::what),   field("accepted", &R::accepted),
-                      field("found", &R::found),   field("change", &R::change), field("share", &R::share),
-                      field("rule", &R::rule),     field("effect", &R::effect)};
+    return std::tuple{field("cell", &R::cell),   field("what", &R::what),     field("accepted", &R::accepted),
+                      field("found", &R::found), field("change", &R::change), field("share", &R::share),
+                      field("rule", &R::rule),   field("effect", &R::effect)};
 }
 
 /// A run of the trends.
@@ -220,24 +221,13 @@ struct PageDocument {
 };
 constexpr auto fields(const PageDocument*) {
     using R = PageDocument;
-    return std::tuple{field("batch", &R::batch),
-                      field("verdict", &R::verdict),
-                      field("folder", &R::folder),
-                      field("counts", &R::counts),
-                      field("run", &R::run),
-                      field("accepted", &R::accepted),
-                      field("acceptance", &R::acceptance),
-                      field("facts", &R::facts),
-                      field("default-metric", &R::default_metric),
-                      field("metrics", &R::metrics),
-                      field("rules", &R::rules),
-                      field("cells", &R::cells),
-                      field("changes", &R::changes),
-                      field("runs", &R::runs),
-                      field("trends", &R::trends),
-                      field("images", &R::images),
-                      field("meshes", &R::meshes),
-                      field("notes", &R::notes)};
+    return std::tuple{
+        field("batch", &R::batch),           field("verdict", &R::verdict), field("folder", &R::folder),
+        field("counts", &R::counts),         field("run", &R::run),         field("accepted", &R::accepted),
+        field("acceptance", &R::acceptance), field("facts", &R::facts),     field("default-metric", &R::default_metric),
+        field("metrics", &R::metrics),       field("rules", &R::rules),     field("cells", &R::cells),
+        field("changes", &R::changes),       field("runs", &R::runs),       field("trends", &R::trends),
+        field("images", &R::images),         field("meshes", &R::meshes),   field("notes", &R::notes)};
 }
 
 }  // namespace scanmill

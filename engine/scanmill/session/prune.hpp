@@ -31,9 +31,10 @@ struct RunBytes {
 };
 std::map<std::int64_t, RunBytes> bytes_by_run(const RunRecords& records);
 
-/// Removes runs from the records of `folder`, and from `folder` the output files, their JSON and the failed results that
-/// no other run names. Of every workflow or batch, the newest `keep` runs stay, and every accepted run. A file stays if
-/// it is outside the folder, or if its bytes are not those that a removed run wrote. With `dry_run`, nothing is removed.
+/// Removes runs from the records of `folder`, and from `folder` the output files, their JSON and the failed results
+/// that no other run names. Of every workflow or batch, the newest `keep` runs stay, and every accepted run. A file
+/// stays if it is outside the folder, or if its bytes are not those that a removed run wrote. With `dry_run`, nothing
+/// is removed.
 ///
 /// Throws FolderInUse while a run writes into the folder, and Error for a folder without records or if a file cannot be
 /// removed. Files are removed before the records, so that a repeated call goes on after an interruption. Warns if a run

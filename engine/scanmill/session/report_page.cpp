@@ -56,13 +56,15 @@ CellNames key_of(const CellComparison& cell) { return {cell.workflow, cell.scan,
 class PageMaker {
 public:
     PageMaker(const fs::path& folder, RunDetails run, Comparison comparison, const FilterLibrary& library)
-        : folder_(folder), run_(std::move(run)), comparison_(std::move(comparison)), library_(library) {
+        : folder_(folder),
+          run_(std::move(run)),
+          comparison_(std::move(comparison)),
+          library_(library) {
         page_.batch = comparison_.batch;
         page_.verdict = comparison_.verdict;
         page_.folder = folder.string();
         for (const Verdict verdict : all_verdicts)
-            if (comparison_.count(verdict) > 0)
-                page_.counts.emplace(name_of(verdict), comparison_.count(verdict));
+            if (comparison_.count(verdict) > 0) page_.counts.emplace(name_of(verdict), comparison_.count(verdict));
         page_.run = page_run(comparison_.run);
         if (comparison_.accepted) page_.accepted = page_run(*comparison_.accepted);
         if (const auto& acceptance = comparison_.acceptance)
@@ -70,8 +72,8 @@ public:
         for (auto& [name, text] : facts_of(comparison_)) page_.facts.push_back({name, text});
         page_.default_metric = default_metric(comparison_);
         for (const std::vector<std::string>& row : rule_table(comparison_, most_rules).rows)
-            page_.rules.push_back({row[0], row[1], row[2], static_cast<std::size_t>(std::stoull(row[3])), row[4], row[5],
-                                   static_cast<std::size_t>(std::stoull(row[6]))});
+            page_.rules.push_back({row[0], row[1], row[2], static_cast<std::size_t>(std::stoull(row[3])), row[4],
+                                   row[5], static_cast<std::size_t>(std::stoull(row[6]))});
     }
 
     void add_cells() {
@@ -100,14 +102,10 @@ public:
             const auto cell = static_cast<std::size_t>(change.cell - comparison_.cells.data());
             PageChange listed;
             const std::vector<std::string> texts = change_texts(change);
-            listed = {cell,
-                      texts[0],
-                      texts[1],
-                      texts[2],
-                      texts[3],
-                      std::isfinite(change.share()) ? std::optional(change.share()) : std::nullopt,
-                      texts[4],
-                      change.effect()};
+            listed = {cell,     texts[0],
+                      texts[1], texts[2],
+                      texts[3], std::isfinite(change.share()) ? std::optional(change.share()) : std::nullopt,
+                      texts[4], change.effect()};
             page_.changes.push_back(std::move(listed));
         }
     }
@@ -191,7 +189,8 @@ public:
                 return mesh.positions.size() + mesh.triangles.size() + mesh.deviation.value_or("").size();
             },
             "view in 3D is", "views in 3D are");
-        leave_out(page_.images, [](const std::string& image) { return image.size(); }, "picture is", "pictures are");
+        leave_out(
+            page_.images, [](const std::string& image) { return image.size(); }, "picture is", "pictures are");
         for (PageCell& cell : page_.cells) {
             if (cell.mesh && !page_.meshes.contains(*cell.mesh)) cell.mesh.reset();
             std::erase_if(cell.pictures, [&](const auto& picture) { return !page_.images.contains(picture.second); });
@@ -201,7 +200,8 @@ public:
 
 private:
     /// The record of the compared cell, whose scan may be written as a path from another folder.
-    const CellRecord* record_of(const CellComparison& cell, const std::map<CellNames, const CellRecord*>& records) const {
+    const CellRecord* record_of(const CellComparison& cell,
+                                const std::map<CellNames, const CellRecord*>& records) const {
         if (const auto found = records.find(key_of(cell)); found != records.end()) return found->second;
         const auto found = by_name_.find({cell.workflow, fs::path(cell.scan).filename().string(), cell.variant});
         if (found == by_name_.end()) return nullptr;
@@ -283,7 +283,8 @@ private:
         if (change.metric) cell.metrics = {*change.metric};
         if (change.output) cell.outputs = {*change.output};
         if (change.cost) cell.costs = {*change.cost};
-        const std::vector<std::string>& row = change_table(one, 1).rows.at(0);
+        const ReportTable table = change_table(one, 1);
+        const std::vector<std::string>& row = table.rows.at(0);
         return {row.begin() + 2, row.begin() + 7};
     }
 
@@ -331,8 +332,8 @@ private:
     enum class Role { truth, scan, result, accepted };
 
     std::size_t wish(PreviewWish wish, bool is_of_tonight) {
-        const std::string key = fmt::format("{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file,
-                                            wish.camera_file);
+        const std::string key =
+            fmt::format("{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file, wish.camera_file);
         const auto [found, is_new] = wish_of_key_.emplace(key, wishes_.size());
         if (is_new) {
             wishes_.push_back(std::move(wish));
@@ -362,20 +363,25 @@ private:
             const Files files = files_of(*record, steps);
             const std::string camera = files.truth.empty() ? files.scan : files.truth;
             const auto result_of = [&](const OutputRecord& output) {
-                return PreviewWish{output.evidence.empty() ? output.file : output.evidence, output.sha256, files.truth,
-                                   camera, output.properties.unit, files.truth_unit, kind_of<TriangleMesh>()};
+                return PreviewWish{output.evidence.empty() ? output.file : output.evidence,
+                                   output.sha256,
+                                   files.truth,
+                                   camera,
+                                   output.properties.unit,
+                                   files.truth_unit,
+                                   kind_of<TriangleMesh>()};
             };
             if (const OutputRecord* output = mesh_of(*record))
                 uses_[wish(result_of(*output), true)].emplace_back(id, Role::result);
-            if (const auto found = before.find({record->workflow, record->scan, record->variant}); found != before.end())
+            if (const auto found = before.find({record->workflow, record->scan, record->variant});
+                found != before.end())
                 if (const OutputRecord* output = mesh_of(*found->second))
                     uses_[wish(result_of(*output), false)].emplace_back(id, Role::accepted);
             if (!files.scan.empty())
                 uses_[wish({files.scan, "", "", camera, files.unit, files.truth_unit, std::nullopt}, true)]
                     .emplace_back(id, Role::scan);
             if (!files.truth.empty())
-                uses_[wish({files.truth, "", "", files.truth, files.truth_unit, files.truth_unit, std::nullopt},
-                           true)]
+                uses_[wish({files.truth, "", "", files.truth, files.truth_unit, files.truth_unit, std::nullopt}, true)]
                     .emplace_back(id, Role::truth);
         }
     }
@@ -494,7 +500,8 @@ PageDocument page_document(const RecordedRun& which, const std::optional<Recorde
 
 std::string page_with(std::string page, const PageDocument& document) {
     const std::size_t at = page.find(data_mark);
-    if (at == std::string::npos) throw Error("the report page of this program has no place for data").hint("build the program again");
+    if (at == std::string::npos)
+        throw Error("the report page of this program has no place for data").hint("build the program again");
     Json json{{"scanmill", 1}};
     json.update(json_of(document));
     std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);

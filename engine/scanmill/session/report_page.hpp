@@ -16,9 +16,9 @@ namespace scanmill {
 /// Throws Error if the program was built without the page.
 std::string page_template();
 
-/// The data of the page: the comparison of `which` with `against`, as compare_recorded() makes it; steps, parameters and
-/// logs from the records; the values of the last `most_nights` runs of the batch; and previews, which are made where
-/// they are missing (make_previews()).
+/// The data of the page: the comparison of `which` with `against`, as compare_recorded() makes it; steps, parameters
+/// and logs from the records; the values of the last `most_nights` runs of the batch; and previews, which are made
+/// where they are missing (make_previews()).
 ///
 /// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
 /// largest first, and then pictures, and a note says so. The truth of a cell is the last file that its steps read
