@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper pictures test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
+.PHONY: help demo nightly paper pictures test test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -20,6 +20,10 @@ demo: release data ## turn scans into closed meshes and print tables
 nightly: release ## compare four surfaces of virtual scans with the accepted run, and print the report
 	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)
 	build/release/bin/scanmill report build/nightly
+	-build/release/bin/scanmill report build/nightly --html build/nightly.html
+
+test-report: ## test the report page in a headless browser; needs Node and Chromium
+	tests/report/run.sh
 
 paper: release data ## make docs/bernardini-1997.md: every stage of the paper's pipeline on one scan, with pictures
 	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
