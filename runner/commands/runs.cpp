@@ -258,6 +258,10 @@ int prune_runs(const Options& options) {
         fmt::print("{} of these runs {}, because something else changed {} since\n",
                    count_text(pruned.changed, "file", "files"), by_count(pruned.changed, "stays", "stay"),
                    by_count(pruned.changed, "it", "them"));
+    if (pruned.read > 0)
+        fmt::print("{} of these runs {}, because runs that stay read files of {}\n",
+                   count_text(pruned.read, "file", "files"), by_count(pruned.read, "stays", "stay"),
+                   by_count(pruned.read, "its name", "their names"));
     if (pruned.outside > 0)
         fmt::print("{} outside the folder {}\n", count_text(pruned.outside, "file", "files"),
                    by_count(pruned.outside, "stays", "stay"));

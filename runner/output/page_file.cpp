@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "commands/common.hpp"
@@ -15,9 +17,20 @@
 
 namespace scanmill::runner {
 
+/// Throws Error for a file that exists and is not a report page, such as the records or a result.
+static void require_replaceable(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    if (!std::filesystem::is_regular_file(file, ignored) || !is_report_page(text))
+        throw Error("'{}' exists and is not a report page", file.string()).hint("choose another name for the page");
+}
+
 void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
                      const std::optional<RecordedRun>& against) {
     std::string page = page_template();
+    require_replaceable(file);
     FilterLibrary library = open_library();
     PreviewSettings settings;
     settings.jobs = std::max(1u, std::thread::hardware_concurrency());

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "scanmill/records/run_records.hpp"
 #include "scanmill/session/output_lock.hpp"
 #include "support/folders.hpp"
 #include "support/program.hpp"
@@ -110,6 +111,50 @@ TEST_F(Prune, AKeptRunThatLostItsFiles_IsWarnedOf_AndListed) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.err, HasSubstr("warning: run 2 stays, but 1 file that it wrote is gone"));
     EXPECT_THAT(runs(), ElementsAre(2));
+}
+
+TEST_F(Prune, AFolderMovedBehindALink_KeepsTheFilesOfRunsThatStay) {
+    run("a.xyz");
+    fs::create_directories(folder_ / "disk");
+    fs::rename(folder_ / "out", folder_ / "disk/out");
+    fs::create_directory_symlink("disk/out", folder_ / "out");
+    run("a.xyz");
+    EXPECT_THAT(prune("1").out, HasSubstr("removed 1 run (1) and 0 files"));
+    EXPECT_TRUE(exists("sub/a.ply")) << "run 2 names it by its new path";
+}
+
+TEST_F(Prune, AnOutputThatIsCalledLikeADescription_Stays) {
+    run("a.xyz");
+    folder_.write("out/sub/a.ply.json", "{\"mine\": 1}\n");
+    run("b.xyz");
+    prune("1");
+    EXPECT_FALSE(exists("sub/a.ply"));
+    EXPECT_EQ(content_of(folder_ / "out/sub/a.ply.json"), "{\"mine\": 1}\n") << "it does not describe the file";
+}
+
+TEST_F(Prune, InterruptedRuns_DoNotCount) {
+    run("a.xyz");
+    RunRecords records = RunRecords::append_to(folder_ / "out" / records_file);
+    RunStart start;
+    start.workflow = "w";
+    records.begin(start);  // killed: it has no end
+    records.end(records.begin(start), "interrupted", 1);
+    EXPECT_THAT(prune("1").out, HasSubstr("removed 0 runs"));
+    EXPECT_TRUE(exists("sub/a.ply"));
+    run("b.xyz");
+    EXPECT_THAT(prune("1").out, HasSubstr("removed 3 runs (1 to 3)"));
+    EXPECT_THAT(runs(), ElementsAre(4));
+}
+
+TEST_F(Prune, AnOutputThatAKeptRunReads_Stays) {
+    run("a.xyz");
+    folder_.write("next.yaml",
+                  "scanmill: 1\nname: next\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
+                  "outputs: {'{scan}-next.ply': voxel-thin}\n");
+    scanmill({"run", "next.yaml", "out/sub/a.ply", "-o", "out", "-q"});
+    run("b.xyz");
+    EXPECT_THAT(prune("1").out, HasSubstr("1 file of these runs stays, because runs that stay read files of its name"));
+    EXPECT_TRUE(exists("sub/a.ply"));
 }
 
 TEST_F(Prune, DryRun_NamesTheFilesAndRemovesNothing) {

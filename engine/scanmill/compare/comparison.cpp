@@ -230,14 +230,16 @@ public:
 private:
     /// Sets `known` if the acknowledgements have all doubts of the cell.
     void find_known(const std::vector<const Acknowledgement*>& all) {
-        if (result_.doubts.empty()) return;
+        if (result_.doubts.empty() || cell_.outcome != Outcome::doubtful) return;
+        const Acknowledgement* last = nullptr;  // that has one of the doubts
+        for (const Acknowledgement* each : all)
+            if (std::ranges::find_first_of(each->doubts, result_.doubts) != each->doubts.end()) last = each;
         const auto is_known = [&](const std::string& doubt) {
             return std::ranges::any_of(all, [&](const Acknowledgement* each) {
                 return std::ranges::find(each->doubts, doubt) != each->doubts.end();
             });
         };
-        if (std::ranges::all_of(result_.doubts, is_known))
-            result_.known = KnownDoubts{all.back()->who, all.back()->why, all.back()->at};
+        if (std::ranges::all_of(result_.doubts, is_known)) result_.known = KnownDoubts{last->who, last->why, last->at};
     }
 
     static std::string failure_text(const FailureRecord& failure) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -105,11 +106,35 @@ std::optional<double> share_of_change(const Comparison& comparison, const CellCo
     return 0;
 }
 
+/// NaN does not count; of an even number of values, the mean of the two in the middle. Infinite if there are none.
 double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    if (values.empty()) return std::numeric_limits<double>::infinity();
+    std::ranges::sort(values);
+    const std::size_t middle = values.size() / 2;
+    if (values.size() % 2 == 1 || values[middle - 1] == values[middle]) return values[middle];
+    return (values[middle - 1] + values[middle]) / 2;
 }
+
+/// The names of the variants that share a row: three at most, and the number of the others.
+class SharedNames {
+public:
+    void add(std::size_t row, const std::string& name) {
+        if (names_.size() <= row) names_.resize(row + 1);
+        names_[row].push_back(name);
+    }
+    std::string text(std::size_t row) const {
+        constexpr std::size_t most = 3;
+        const std::vector<std::string>& all = names_[row];
+        const std::vector<std::string> shown(all.begin(),
+                                             all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most)));
+        return fmt::format("{}{}", fmt::join(shown, ", "),
+                           all.size() > most ? fmt::format(" and {} more", all.size() - most) : "");
+    }
+
+private:
+    std::vector<std::vector<std::string>> names_;
+};
 
 double median_share(const RuleRow& row) { return row.shares.empty() ? 0 : median_of(row.shares); }
 
@@ -238,6 +263,7 @@ ReportTable change_table(const Comparison& comparison, std::size_t most) {
     ReportTable table{{"scan", "variant", "what", "accepted", "now", "change", "rule", ""}, {}, {}};
     const bool with_workflow = has_several_workflows(comparison);
     std::map<std::vector<std::string>, std::size_t> row_of_change;  // by the cells of the row except the variant
+    SharedNames names;
     std::size_t left_out = 0;
     for (const RankedChange& change : what_changed(comparison)) {
         std::vector<std::string> row{change.cell->scan, ""};
@@ -248,15 +274,16 @@ ReportTable change_table(const Comparison& comparison, std::size_t most) {
         row.push_back(effect_text(change.effect()));
         const std::string variant = variant_text(*change.cell, with_workflow);
         if (const auto known = row_of_change.find(row); known != row_of_change.end()) {
-            table.rows[known->second][1] += ", " + variant;
+            names.add(known->second, variant);
         } else if (table.rows.size() == most) {
             ++left_out;
         } else {
             row_of_change.emplace(row, table.rows.size());
-            row[1] = variant;
+            names.add(table.rows.size(), variant);
             table.rows.push_back(std::move(row));
         }
     }
+    for (std::size_t row = 0; row < table.rows.size(); ++row) table.rows[row][1] = names.text(row);
     if (left_out > 0) table.rest = fmt::format("and {} more", left_out);
     return table;
 }
@@ -265,6 +292,7 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
     ReportTable table{{"verdict", "scan", "variant", "why"}, {}, {}};
     const bool with_workflow = has_several_workflows(comparison);
     std::map<std::tuple<std::string, std::string, std::string>, std::size_t> row_of_reason;
+    SharedNames names;
     std::size_t left_out = 0;
     for (const Verdict verdict : all_verdicts) {
         if (!is_trouble(verdict)) continue;
@@ -279,15 +307,17 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
             const std::string variant = variant_text(cell, with_workflow);
             const auto known = row_of_reason.find({std::string(name_of(verdict)), cell.scan, text});
             if (known != row_of_reason.end()) {
-                table.rows[known->second][2] += ", " + variant;
+                names.add(known->second, variant);
             } else if (table.rows.size() == most) {
                 ++left_out;
             } else {
                 row_of_reason[{std::string(name_of(verdict)), cell.scan, text}] = table.rows.size();
-                table.rows.push_back({std::string(name_of(verdict)), cell.scan, variant, text});
+                names.add(table.rows.size(), variant);
+                table.rows.push_back({std::string(name_of(verdict)), cell.scan, "", text});
             }
         }
     }
+    for (std::size_t row = 0; row < table.rows.size(); ++row) table.rows[row][2] = names.text(row);
     if (left_out > 0) table.rest = fmt::format("and {}", count_text(left_out, "more cell", "more cells"));
     return table;
 }

@@ -289,6 +289,16 @@ std::vector<RecordedFile> RunRecords::files() const {
     });
 }
 
+std::vector<std::string> RunRecords::read_files(std::int64_t run) const {
+    return about(database_->file, [&] {
+        SQLite::Statement rows(database_->sqlite, "SELECT DISTINCT file FROM step WHERE parent = ? AND file <> ''");
+        rows.bind(1, run);
+        std::vector<std::string> files;
+        while (rows.executeStep()) files.push_back(rows.getColumn(0).getString());
+        return files;
+    });
+}
+
 namespace {
 
 /// Removes the rows of `table` that fulfil the condition, after the rows of other tables that belong to them.

@@ -111,6 +111,8 @@ public:
 
     /// The files that the runs wrote, in the order of the runs.
     std::vector<RecordedFile> files() const;
+    /// The files that the steps of the run read, as they were named.
+    std::vector<std::string> read_files(std::int64_t run) const;
     /// Removes these runs with everything that belongs to them, and gives the space back to the file system. If that
     /// fails, because the disk is full, warns: the next run then uses the space.
     void remove(const std::vector<std::int64_t>& runs, const std::function<void(std::string)>& warn);

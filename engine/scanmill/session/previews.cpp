@@ -692,8 +692,11 @@ QuantisedMesh quantised(const fs::path& file) {
     for (const double each : deviations(*mesh)) result.range = std::max(result.range, each);
     for (std::size_t row = 0; row < column->rows(); ++row) {
         const double value = column->number(row);
-        const bool has_place = std::isfinite(value) && result.range > 0;
-        result.deviation.push_back(quantised(has_place ? 0.5 + value / (2 * result.range) : 0.5));
+        const double place = result.range > 0 ? 0.5 + value / (2 * result.range) : 0.5;
+        result.deviation.push_back(std::isfinite(value)
+                                       ? static_cast<std::uint16_t>(std::lround(std::clamp(place, 0.0, 1.0) *
+                                                                                (QuantisedMesh::no_deviation - 1)))
+                                       : QuantisedMesh::no_deviation);
     }
     return result;
 }

@@ -88,12 +88,14 @@ struct QuantisedMesh {
     Vec3 low, high;  ///< box of the vertices in world coordinates
     std::vector<std::uint16_t> positions;  ///< 3 per vertex: 0 is `low`, 65535 is `high`; 0 where both are equal
     std::vector<u32> triangles;  ///< 3 vertices per triangle
-    std::vector<std::uint16_t> deviation;  ///< 1 per vertex: 0 is -range, 65535 is range; empty: not in the file
+    static constexpr std::uint16_t no_deviation = 65535;
+    /// 1 per vertex: 0 is -range, 65534 is range, no_deviation is NaN; empty: not in the file.
+    std::vector<std::uint16_t> deviation;
     double range = 0;  ///< largest absolute deviation, in the unit of the mesh
     LengthUnit unit = LengthUnit::unknown;
 };
 
-/// Reads the mesh of a preview. The deviation is the first vertex column of lengths; NaN becomes 0. Throws Error as
+/// Reads the mesh of a preview. The deviation is the first vertex column of lengths. Throws Error as
 /// read_mesh() does.
 QuantisedMesh quantised(const std::filesystem::path& mesh);
 

@@ -19,7 +19,8 @@ struct Pruned {
     std::vector<std::filesystem::path> files;
     std::uint64_t bytes = 0;        ///< of the files
     std::size_t changed = 0;        ///< files of removed runs that stay, because something else wrote them anew
-    std::size_t outside = 0;        ///< files of removed runs that stay, because they are outside the folder
+    std::size_t read = 0;  ///< files of removed runs that stay, because runs that stay read files of their names
+    std::size_t outside = 0;  ///< files of removed runs that stay, because they are outside the folder
     std::uint64_t records_before = 0, records_after = 0;  ///< sizes of the file with the records
 };
 
@@ -32,8 +33,9 @@ struct RunBytes {
 std::map<std::int64_t, RunBytes> bytes_by_run(const RunRecords& records);
 
 /// Removes runs from the records of `folder`, and from `folder` the output files, their JSON and the failed results
-/// that no other run names. Of every workflow or batch, the newest `keep` runs stay, and every accepted run. A file
-/// stays if it is outside the folder, or if its bytes are not those that a removed run wrote. With `dry_run`, nothing
+/// that no other run names. Of every workflow or batch, the newest `keep` runs that ended stay, those that were
+/// interrupted since, and every accepted run. A file stays if it is outside the folder, if its bytes are not those that
+/// a removed run wrote, or if a run that stays reads a file of its name. With `dry_run`, nothing
 /// is removed.
 ///
 /// Throws FolderInUse while a run writes into the folder, and Error for a folder without records or if a file cannot be

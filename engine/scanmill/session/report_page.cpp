@@ -310,22 +310,23 @@ private:
     Files files_of(const CellRecord& record, const StepsByNode& steps) const {
         Files files;
         std::vector<std::string> read;
-        bool measures = false;
+        LengthUnit unit = LengthUnit::unknown;  // of the last file that was read
         for (const std::size_t node : record.nodes) {
             const auto found = steps.find(node);
             if (found == steps.end()) continue;
             const StepRecord& step = *found->second;
             if (step.filter.empty()) {
                 read.push_back(step.file);
-                files.truth_unit = declared_unit(step);
-                if (read.size() == 1) files.unit = files.truth_unit;
+                unit = declared_unit(step);
+                if (read.size() == 1) files.unit = unit;
                 continue;
             }
             const FilterSpec* spec = library_.find(step.filter);
-            measures = measures || (spec && spec->measures);
+            if (!spec || !spec->measures || read.size() < 2 || !files.truth.empty()) continue;
+            files.truth = read.back();
+            files.truth_unit = unit;
         }
         if (!read.empty()) files.scan = read.front();
-        if (measures && read.size() > 1) files.truth = read.back();
         return files;
     }
 
@@ -438,9 +439,7 @@ private:
         else
             shown.triangles = base64_of_numbers(mesh.triangles);
         if (!has_deviation) return;
-        std::vector<std::uint16_t> deviation = mesh.deviation;
-        for (std::uint16_t& value : deviation) value = std::min<std::uint16_t>(value, 65534);  // 65535 is "none"
-        shown.deviation = base64_of_numbers(deviation);
+        shown.deviation = base64_of_numbers(mesh.deviation);
         shown.deviation_low = -mesh.range;
         shown.deviation_high = mesh.range;
     }
@@ -449,11 +448,14 @@ private:
     /// outside.
     static PageHistogram histogram(const QuantisedMesh& mesh, double scale) {
         PageHistogram found{-scale, scale, std::vector<double>(histogram_bins, 0.0), {}};
+        const auto known = static_cast<double>(mesh.deviation.size()) -
+                           static_cast<double>(std::ranges::count(mesh.deviation, QuantisedMesh::no_deviation));
         for (const std::uint16_t value : mesh.deviation) {
-            const double deviation = mesh.range * (2.0 * value / 65535 - 1);
+            if (value == QuantisedMesh::no_deviation) continue;
+            const double deviation = mesh.range * (2.0 * value / (QuantisedMesh::no_deviation - 1) - 1);
             const double place = scale > 0 ? (deviation / scale + 1) / 2 * histogram_bins : histogram_bins / 2.0;
             const double bin = std::clamp(std::floor(place), 0.0, histogram_bins - 1.0);
-            found.shares[static_cast<std::size_t>(bin)] += 1.0 / static_cast<double>(mesh.deviation.size());
+            found.shares[static_cast<std::size_t>(bin)] += 1 / known;
         }
         return found;
     }
@@ -496,6 +498,10 @@ PageDocument page_document(const RecordedRun& which, const std::optional<Recorde
     maker.add_trends(records);
     maker.add_previews(library, settings, accepted ? &*accepted : nullptr, warn);
     return maker.finished();
+}
+
+bool is_report_page(std::string_view text) {
+    return text.find(data_mark.substr(0, data_mark.find("null"))) != std::string_view::npos;
 }
 
 std::string page_with(std::string page, const PageDocument& document) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/page_documents.hpp"
@@ -22,12 +23,14 @@ std::string page_template();
 ///
 /// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
 /// largest first, and then pictures, and a note says so. The truth of a cell is the last file that its steps read
-/// besides the scan, if one of them measures.
+/// besides the scan before a step that measures.
 constexpr std::size_t most_nights = 30;
 PageDocument page_document(const RecordedRun& which, const std::optional<RecordedRun>& against,
                            const CommandFor& command, FilterLibrary& library, const PreviewSettings& settings,
                            const std::function<void(std::string)>& warn);
 
+/// Whether the text is a report page.
+bool is_report_page(std::string_view text);
 /// The page with these data. Pre: `page` is page_template().
 std::string page_with(std::string page, const PageDocument& document);
 
