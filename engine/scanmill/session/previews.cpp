@@ -37,7 +37,7 @@ constexpr std::string_view picture_size = "[320, 240]";
 constexpr std::size_t most_triangles = 3000;
 /// Only the number of triangles should end the simplification.
 constexpr std::string_view largest_error = "5 %diag";
-constexpr double share_of_first_pass = 5.0 / 6;  // of the time limit
+constexpr double share_of_first_pass = 5.0 / 6;  // share of the time limit
 constexpr std::size_t wishes_per_run = 24;
 
 constexpr std::string_view picture_end = ".png", deviation_end = "-deviation.png", mesh_end = ".ply",
@@ -395,7 +395,7 @@ private:
     // The workflow that draws, simplifies and measures a file.
 
     struct Source {
-        std::string name;  ///< of the workflow's input
+        std::string name;  ///< name of the workflow's input
         Kind kind;
         std::vector<Kind> also;
     };

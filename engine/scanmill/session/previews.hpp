@@ -30,7 +30,7 @@ namespace scanmill {
 
 struct PreviewWish {
     std::filesystem::path file;  ///< may be the name of a view; see file_view()
-    std::string sha256;          ///< of the file's bytes when it was recorded; empty: of its bytes now
+    std::string sha256;          ///< hash of the file's bytes when it was recorded; empty: of its bytes now
     std::string truth_file;      ///< for the deviation of a mesh; empty: none
     /// Sets the camera: the truth, or else the scan, so that pictures of all variants of a scan match. A mesh or
     /// points. Empty: the wished file.

@@ -17,7 +17,7 @@ namespace scanmill {
 struct Pruned {
     std::vector<std::int64_t> runs;
     std::vector<std::filesystem::path> files;
-    std::uint64_t bytes = 0;        ///< of the files
+    std::uint64_t bytes = 0;        ///< size of the files
     std::size_t changed = 0;        ///< files of removed runs that stay, because something else wrote them anew
     std::size_t read = 0;  ///< files of removed runs that stay, because runs that stay read files of their names
     std::size_t outside = 0;  ///< files of removed runs that stay, because they are outside the folder

@@ -310,7 +310,7 @@ private:
     Files files_of(const CellRecord& record, const StepsByNode& steps) const {
         Files files;
         std::vector<std::string> read;
-        LengthUnit unit = LengthUnit::unknown;  // of the last file that was read
+        LengthUnit unit = LengthUnit::unknown;  // declared for the last file that was read
         for (const std::size_t node : record.nodes) {
             const auto found = steps.find(node);
             if (found == steps.end()) continue;
