@@ -95,6 +95,58 @@ export interface Cell {
     mesh: string | null;
     "deviation-unit": string;
     histogram: Histogram | null;
+    /// Set if a step of the cell inspected a part.
+    inspection: Inspection | null;
+}
+
+/// What a step that compares a part with its nominal found. Texts have their units.
+export interface Inspection {
+    step: string;
+    /// Unit of lengths.
+    unit: string;
+    tolerance: [number, number];
+    /// Of all counted points, over the range of the heat map's colours.
+    histogram: Histogram | null;
+    /// What the workflow expects of the step: name of the metric and text, as ["in-tolerance", "99 % to 100 %"]. Empty:
+    /// the workflow sets no limit, so that a passed cell says nothing about the part.
+    expected: [string, string][];
+    columns: { name: string; help: string }[];
+    /// The whole nominal first, then its parts by number. One text per column; empty: a part without points.
+    rows: { part: string; texts: string[] }[];
+    /// The points that deviate most, as they are numbered in pictures.
+    labels: { deviation: string; value: number; position: [string, string, string] }[];
+    /// The step's other numbers, such as alignment, chord error and points that do not count.
+    facts: { name: string; text: string; help: string }[];
+}
+
+/// The data of inspection sheets: one page per part and, for several parts, a first page with the verdicts.
+export interface SheetData {
+    scanmill: 1;
+    batch: string;
+    folder: string;
+    run: Run;
+    sheets: Sheet[];
+    images: Record<string, string>;
+    notes: string[];
+}
+
+/// A part. Without `inspection` no step inspected it, and `error` or `reasons` say why.
+export interface Sheet {
+    workflow: string;
+    scan: string;
+    variant: string;
+    verdict: Verdict;
+    outcome: string;
+    reasons: string[];
+    doubts: string[];
+    known: Statement | null;
+    warnings: string[];
+    error: string;
+    /// Files, filters with versions, program, machine, times: name and text.
+    facts: [string, string][];
+    inspection: Inspection | null;
+    /// At most two heat maps. `image` is a key of `images`.
+    pictures: { image: string; caption: string }[];
 }
 
 export interface Value {
