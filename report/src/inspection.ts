@@ -28,11 +28,16 @@ export function found(inspection: Inspection, metric: string): string | undefine
 
 /// `at least 99 %` for a share that is expected from 99 % to 100 %; other texts stay as they are.
 export function limitText([metric, text]: [string, string]): string {
-    if (!shares.includes(metric.split("@")[0] ?? "")) return withMinus(text);
+    if (!shares.includes(metric.split("@")[0] ?? "")) return unbroken(withMinus(text));
     const [, low, high] = /^(\S+ ?%) to (\S+ ?%)$/.exec(text) ?? [];
-    if (low !== undefined && numberIn(high ?? "") === 100) return `at least ${low}`;
-    if (high !== undefined && numberIn(low ?? "") === 0) return `at most ${high}`;
-    return text;
+    if (low !== undefined && numberIn(high ?? "") === 100) return `at least ${unbroken(low)}`;
+    if (high !== undefined && numberIn(low ?? "") === 0) return `at most ${unbroken(high)}`;
+    return unbroken(text);
+}
+
+/// No line break between a number and its unit.
+function unbroken(text: string): string {
+    return text.replace(/(\d) (?=[^\d\s])(?!to )/g, "$1\u00a0");
 }
 
 export function nameOf(metric: string): string {
@@ -46,7 +51,7 @@ export function limitSentences(inspection: Inspection): string[] {
     return inspection.expected.map((limit) => {
         const text = found(inspection, limit[0]);
         const name = nameOf(limit[0]);
-        return `${name.charAt(0).toUpperCase()}${name.slice(1)}${text === undefined ? ":" : ` ${withMinus(text)},`} ${limitText(limit)} expected.`;
+        return `${name.charAt(0).toUpperCase()}${name.slice(1)}${text === undefined ? ":" : ` ${unbroken(withMinus(text))},`} ${limitText(limit)} expected.`;
     });
 }
 
@@ -64,7 +69,7 @@ export function partTable(inspection: Inspection, rows: Row[], columns: number[]
 export function labelTable(inspection: Inspection, most = inspection.labels.length): HTMLElement | null {
     if (inspection.labels.length === 0) return null;
     const labels = inspection.labels.slice(0, most);
-    const deviations = columnOf(labels.map((label) => label.deviation));
+    const deviations = columnOf(labels.map((label) => (label.value > 0 ? label.deviation.replace(/^(?=[\d.])/, "+") : label.deviation)));
     const positions = [0, 1, 2].map((axis) => columnOf(labels.map((label) => label.position[axis] ?? "")));
     const [low, high] = inspection.tolerance;
     return scrolled("Largest deviations", element("table", { class: "labels", "aria-label": "Largest deviations" },

@@ -25,7 +25,7 @@ function build(data: SheetData): void {
     const worst = results.find((result) => parts.some(({ sheet }) => resultOf(sheet) === result)) ?? "missing";
     document.title = `${resultSymbols[worst]} ${data.batch}: inspection, ${isOne ? resultWords[worst].toLowerCase() : `${parts.length} parts`}`;
     document.body.append(
-        element("header", { class: "bar" },
+        element("header", { class: "topbar" },
             element(parts.length > 1 ? "p" : "h1", null, `Inspection of ${data.batch}`),
             parts.length > 1 && element("a", { href: "#parts" }, "All parts"),
             element("button", { type: "button", onclick: () => print() }, "Print")),

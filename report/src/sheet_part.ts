@@ -22,7 +22,7 @@ export interface Numbered {
 
 /// Columns that a table of parts keeps longest if it is wider than the paper.
 const importance = ["in-tolerance", "min", "max", "mean", "rms", "standard-deviation", "p1", "p99", "above", "below", "points", "p5", "p95", "p50"];
-const [longName, mostColumns] = [48, 9];
+const [longName, longText, mostColumns] = [48, 46, 9];
 
 export function partPage(data: SheetData, part: Numbered, count: number, room: Room): HTMLElement {
     const { sheet } = part;
@@ -78,7 +78,7 @@ function content(data: SheetData, sheet: Sheet, inspection: Inspection, room: Ro
                 !isWholeInTable && section("Whole nominal", wholeList(inspection))),
             element("div", null,
                 section("Largest deviations", labels, labels && labelKey(inspection, room.labels), labels && leftOut > 0 && left(leftOut, "label")),
-                section("Alignment and points left out", factList({ ...inspection, facts: inspection.facts.slice(0, room.facts) }), inspection.facts.length > room.facts && left(inspection.facts.length - room.facts, "number")))),
+                section("Conditions of the comparison", factList({ ...inspection, facts: inspection.facts.slice(0, room.facts) }), inspection.facts.length > room.facts && left(inspection.facts.length - room.facts, "number")))),
         parts(inspection, room),
     ];
 }
@@ -89,9 +89,12 @@ function parts(inspection: Inspection, room: Room): HTMLElement | null {
     const columns = chosenColumns(inspection);
     const leftOut = inspection.rows.length - rows.length;
     const hidden = inspection.columns.filter((_, index) => !columns.includes(index)).map((column) => column.name);
+    const remarks = [
+        leftOut > 0 && `${order}; ${format.counted(leftOut, "other part")} of ${inspection.rows.length - 1} ${leftOut === 1 ? "is" : "are"} left out.`,
+        hidden.length > 0 && `Not shown for parts: ${hidden.join(", ")}.`,
+    ].filter((remark) => remark !== false);
     return section("The nominal and its parts", partTable(inspection, rows, columns),
-        leftOut > 0 && element("p", { class: "key" }, `${order}; ${format.counted(leftOut, "other part")} of ${inspection.rows.length - 1} ${leftOut === 1 ? "is" : "are"} left out.`),
-        hidden.length > 0 && element("p", { class: "key" }, `Not shown for parts: ${hidden.join(", ")}.`));
+        remarks.length > 0 && element("p", { class: "key" }, remarks.join(" ")));
 }
 
 /// The whole nominal, and the parts that deviate most if there is no room for all.
@@ -139,7 +142,7 @@ function files(sheet: Sheet, room: Room): HTMLElement | null {
     if (sheet.facts.length === 0) return null;
     const shown = sheet.facts.slice(0, room.facts);
     return section("Files and versions", element("dl", { class: "files" }, shown.map(([name, text]) =>
-        element("div", null, element("dt", null, shortened(name, 80)), element("dd", null, shortened(text, room.characters))))),
+        element("div", { class: text.length > longText ? "wide" : null }, element("dt", null, shortened(name, 60)), element("dd", null, shortened(text, room.characters))))),
         sheet.facts.length > shown.length && left(sheet.facts.length - shown.length, "line"));
 }
 

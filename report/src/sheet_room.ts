@@ -30,14 +30,16 @@ export function roomsOf(sheet: Sheet): Room[] {
         for (let rows = Math.max(room.parts, room.labels) - 1; rows >= last; --rows) then({ parts: Math.min(room.parts, rows), labels: Math.min(room.labels, rows) });
     };
     then({ pictures: 1 });
+    then({ pictures: 2 });
     rowsDownTo(fewRows);
     then({ characters: 400, notes: Math.min(room.notes, 8) });
-    then({ facts: Math.min(room.facts, 20) });
+    then({ facts: Math.min(room.facts, 16) });
     then({ characters: 240 });
-    then({ pictures: 2 });
+    then({ pictures: 3 });
     rowsDownTo(fewestRows);
-    then({ notes: Math.min(room.notes, 4), facts: Math.min(room.facts, 12) });
+    then({ notes: Math.min(room.notes, 4), facts: Math.min(room.facts, 10) });
     then({ characters: 120, facts: Math.min(room.facts, 6) });
+    then({ characters: 80, notes: Math.min(room.notes, 2), facts: Math.min(room.facts, 4) });
     return rooms;
 }
 
