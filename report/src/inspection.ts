@@ -95,11 +95,12 @@ export function factList(inspection: Inspection): HTMLElement | null {
         element("div", null, element("dt", null, metricName(fact)), element("dd", null, withMinus(fact.text)))));
 }
 
-/// The numbers of the whole nominal as pairs of name and text.
-export function wholeList(inspection: Inspection): HTMLElement | null {
+/// The numbers of the whole nominal as pairs of name and text, without the columns that are shown elsewhere.
+export function wholeList(inspection: Inspection, elsewhere: number[]): HTMLElement | null {
+    const columns = inspection.columns.map((column, index) => ({ column, index })).filter(({ index }) => !elsewhere.includes(index));
     const texts = inspection.rows[0]?.texts ?? [];
-    if (texts.length === 0) return null;
-    return element("dl", { class: "numbers" }, inspection.columns.map((column, index) =>
+    if (texts.length === 0 || columns.length === 0) return null;
+    return element("dl", { class: "numbers" }, columns.map(({ column, index }) =>
         element("div", null, element("dt", null, metricName(column)), element("dd", null, withMinus(texts[index] || "–")))));
 }
 

@@ -68,17 +68,19 @@ function verdict(sheet: Sheet, room: Room): HTMLElement {
 
 function content(data: SheetData, sheet: Sheet, inspection: Inspection, room: Room): Child[] {
     const labels = labelTable(inspection, room.labels);
-    const leftOut = inspection.labels.length - room.labels;
-    const isWholeInTable = inspection.rows.length > 1 && inspection.columns.length <= mostColumns;
+    const hasParts = inspection.rows.length > 1;
+    // The table of the parts shows the other numbers of the whole nominal.
+    const whole = section("Whole nominal", wholeList(inspection, hasParts ? chosenColumns(inspection) : []));
+    const conditions = section("Conditions of the comparison", factList({ ...inspection, facts: inspection.facts.slice(0, room.facts) }), left(inspection.facts.length - room.facts));
     return [
         pictures(data, sheet, room),
         element("div", { class: "columns" },
             element("div", null,
                 section("Histogram of the deviations", inspection.histogram ? deviationChart(inspection.histogram, inspection.unit) : element("p", { class: "quiet" }, "There is no histogram.")),
-                !isWholeInTable && section("Whole nominal", wholeList(inspection))),
+                hasParts ? conditions : whole),
             element("div", null,
-                section("Largest deviations", labels, labels && labelKey(inspection, room.labels), labels && leftOut > 0 && left(leftOut, "label")),
-                section("Conditions of the comparison", factList({ ...inspection, facts: inspection.facts.slice(0, room.facts) }), inspection.facts.length > room.facts && left(inspection.facts.length - room.facts, "number")))),
+                section("Largest deviations", labels ?? element("p", { class: "quiet" }, "There are no labels."), labels && labelKey(inspection, room.labels), left(inspection.labels.length - room.labels)),
+                hasParts ? whole : conditions)),
         parts(inspection, room),
     ];
 }
@@ -135,7 +137,7 @@ function notes(title: string, all: Note[], room: Room): HTMLElement | null {
     const shown = all.slice(0, room.notes);
     return section(title, element("ul", { class: "notes" }, shown.map(([symbol, word, text]) =>
         element("li", null, symbol && element("span", { class: "note-symbol", "aria-hidden": "true" }, symbol), word && element("strong", { class: "plain" }, `${word}: `), shortened(text, room.characters)))),
-        all.length > shown.length && left(all.length - shown.length, "text"));
+        left(all.length - shown.length));
 }
 
 function files(sheet: Sheet, room: Room): HTMLElement | null {
@@ -143,7 +145,7 @@ function files(sheet: Sheet, room: Room): HTMLElement | null {
     const shown = sheet.facts.slice(0, room.facts);
     return section("Files and versions", element("dl", { class: "files" }, shown.map(([name, text]) =>
         element("div", { class: text.length > longText ? "wide" : null }, element("dt", null, shortened(name, 60)), element("dd", null, shortened(text, room.characters))))),
-        sheet.facts.length > shown.length && left(sheet.facts.length - shown.length, "line"));
+        left(sheet.facts.length - shown.length));
 }
 
 function signature(): HTMLElement {
@@ -151,8 +153,8 @@ function signature(): HTMLElement {
 }
 
 /// Reports how many there was no room for.
-function left(number: number, noun: string): HTMLElement {
-    return element("p", { class: "key" }, `${format.counted(number, `more ${noun}`)} ${number === 1 ? "is" : "are"} left out.`);
+function left(number: number): HTMLElement | null {
+    return number > 0 ? element("p", { class: "key" }, `${format.count(number)} more ${number === 1 ? "is" : "are"} left out.`) : null;
 }
 
 function section(title: string, ...contents: Child[]): HTMLElement | null {

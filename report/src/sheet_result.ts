@@ -10,7 +10,7 @@ export type Result = (typeof results)[number];
 
 export const resultSymbols: Record<Result, string> = { failed: "✕", missing: "∅", regressed: "▼", doubtful: "?", unlimited: "○", passed: "✓" };
 export const resultWords: Record<Result, string> = {
-    failed: "Failed", missing: "Not inspected", regressed: "Worse than accepted", doubtful: "Doubtful", unlimited: "No limit set", passed: "Passed",
+    failed: "Failed", missing: "Not inspected", regressed: "Regressed", doubtful: "Doubtful", unlimited: "No limit set", passed: "Passed",
 };
 
 export function resultOf(sheet: Sheet): Result {
