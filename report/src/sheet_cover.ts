@@ -10,6 +10,7 @@ import { scanName } from "./names.ts";
 import { columnOf, quantityCell } from "./quantity.ts";
 import type { Column } from "./quantity.ts";
 import { resultMark, resultOf, results, resultSymbols, resultWords } from "./sheet_result.ts";
+import { longName } from "./sheet_part.ts";
 import type { Numbered } from "./sheet_part.ts";
 
 const metrics = ["in-tolerance", "min", "max"];
@@ -21,7 +22,7 @@ export function cover(data: SheetData, parts: Numbered[]): HTMLElement {
     const severalVariants = new Set(parts.map(({ sheet }) => sheet.variant)).size > 1;
     return element("article", { class: "sheet cover", id: "parts", "aria-labelledby": "parts-title" },
         element("header", { class: "heading" },
-            element("div", null, element("p", { class: "overline" }, "Inspection"), element("h1", { id: "parts-title", class: "name" }, data.batch)),
+            element("div", null, element("p", { class: "overline" }, "Inspection"), element("h1", { id: "parts-title", class: data.batch.length > longName ? "name long" : "name" }, data.batch)),
             element("div", { class: "date" }, element("p", null, format.time(data.run.started)), element("p", { class: "quiet" }, `Run ${data.run.id}`))),
         element("p", { class: "sentence" }, sentence(parts)),
         element("ul", { class: "counts", "aria-label": "Parts by verdict" }, results.map((result) => {

@@ -21,8 +21,10 @@ export interface Numbered {
 }
 
 /// Columns that a table of parts keeps longest if it is wider than the paper.
-const importance = ["in-tolerance", "min", "max", "mean", "rms", "standard-deviation", "p1", "p99", "above", "below", "points", "p5", "p95", "p50"];
-const [longName, longText, mostColumns] = [48, 46, 9];
+const importance = ["in-tolerance", "min", "max", "mean", "rms", "above", "below", "p1", "p99", "points", "standard-deviation", "p5", "p95", "p50"];
+const [longText, mostColumns] = [46, 9];
+/// Longer names have smaller letters.
+export const longName = 48;
 
 export function partPage(data: SheetData, part: Numbered, count: number, room: Room): HTMLElement {
     const { sheet } = part;

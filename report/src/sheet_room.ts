@@ -9,8 +9,9 @@ export interface Room {
     pictures: number;
     parts: number;
     labels: number;
-    /// Doubts, warnings and reasons.
+    /// Doubts and warnings; also reasons.
     notes: number;
+    /// Files and versions; also conditions of the comparison.
     facts: number;
     /// Characters of a text.
     characters: number;
@@ -22,24 +23,26 @@ const [fewRows, fewestRows] = [8, 3];
 export function roomsOf(sheet: Sheet): Room[] {
     const parts = sheet.inspection?.rows.length ?? 0;
     const labels = sheet.inspection?.labels.length ?? 0;
-    const facts = sheet.facts.length + (sheet.inspection?.facts.length ?? 0);
-    let room: Room = { pictures: 0, parts, labels, notes: sheet.doubts.length + sheet.warnings.length + sheet.reasons.length, facts, characters: 4000 };
-    const rooms = [room];
-    const then = (less: Partial<Room>) => rooms.push((room = { ...room, ...less }));
-    const rowsDownTo = (last: number) => {
-        for (let rows = Math.max(room.parts, room.labels) - 1; rows >= last; --rows) then({ parts: Math.min(room.parts, rows), labels: Math.min(room.labels, rows) });
+    const facts = Math.max(sheet.facts.length, sheet.inspection?.facts.length ?? 0);
+    const notes = Math.max(sheet.doubts.length + sheet.warnings.length, sheet.reasons.length);
+    const rooms: Room[] = [{ pictures: 0, parts, labels, notes, facts, characters: 4000 }];
+    const atMost = (limits: Partial<Room>) => {
+        const last = rooms.at(-1)!;
+        const least = (key: keyof Room) => Math.min(last[key], limits[key] ?? Infinity);
+        rooms.push({ pictures: limits.pictures ?? last.pictures, parts: least("parts"), labels: least("labels"), notes: least("notes"), facts: least("facts"), characters: least("characters") });
     };
-    then({ pictures: 1 });
-    then({ pictures: 2 });
-    rowsDownTo(fewRows);
-    then({ characters: 400, notes: Math.min(room.notes, 8) });
-    then({ facts: Math.min(room.facts, 16) });
-    then({ characters: 240 });
-    then({ pictures: 3 });
-    rowsDownTo(fewestRows);
-    then({ notes: Math.min(room.notes, 4), facts: Math.min(room.facts, 10) });
-    then({ characters: 120, facts: Math.min(room.facts, 6) });
-    then({ characters: 80, notes: Math.min(room.notes, 2), facts: Math.min(room.facts, 4) });
+    atMost({ pictures: 1 });
+    atMost({ pictures: 2 });
+    for (let rows = Math.max(parts, labels) - 1; rows >= fewRows; --rows) atMost({ parts: rows, labels: rows });
+    atMost({ notes: 8, characters: 400 });
+    atMost({ facts: 16 });
+    atMost({ characters: 240 });
+    atMost({ pictures: 3 });
+    for (let rows = fewRows - 1; rows >= fewestRows; --rows) atMost({ parts: rows });
+    for (let rows = fewRows - 1; rows >= fewestRows; --rows) atMost({ labels: rows });
+    atMost({ notes: 4, facts: 10 });
+    atMost({ facts: 6, characters: 120 });
+    atMost({ notes: 2, facts: 4, characters: 80 });
     return rooms;
 }
 
