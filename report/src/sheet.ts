@@ -50,7 +50,7 @@ function pages(data: SheetData, parts: Numbered[], count: number): HTMLElement[]
     document.body.append(ruler);
     let guess = 0;
     const made = parts.map((part) => {
-        const rooms = roomsOf(part.sheet);
+        const rooms = roomsOf(data, part.sheet);
         const page = (index: number) => partPage(data, part, count, rooms[index]!);
         guess = firstFit(rooms.length, (index) => {
             ruler.replaceChildren(page(index));

@@ -51,8 +51,8 @@ function verdict(sheet: Sheet, room: Room): HTMLElement {
     const result = resultOf(sheet);
     // The sentence of a limit says the same with both numbers.
     const isSaid = (reason: string) => {
-        const metric = /^expected (\S+) in /.exec(reason)?.[1];
-        return inspection !== null && metric !== undefined && inspection.expected.some(([name]) => name === metric) && found(inspection, metric) !== undefined;
+        const [, metric = "", text] = /^expected (\S+) in .*, found (.+)$/.exec(reason) ?? [];
+        return text !== undefined && inspection !== null && inspection.expected.some(([name]) => name === metric) && found(inspection, metric) === text;
     };
     const reasons = sheet.reasons.filter((reason) => !isSaid(reason));
     const hasError = sheet.error !== "" && !sheet.reasons.some((reason) => sheet.error.includes(reason) && isSaid(reason));

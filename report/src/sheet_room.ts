@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Chooses how much a page of a part shows, so that it fits on one sheet of paper.
 
-import type { Sheet } from "./data.ts";
+import type { Sheet, SheetData } from "./data.ts";
 
 /// The most that a page shows.
 export interface Room {
@@ -9,7 +9,7 @@ export interface Room {
     pictures: number;
     parts: number;
     labels: number;
-    /// Doubts and warnings; also reasons.
+    /// Doubts and warnings; also reasons; also notes of the run.
     notes: number;
     /// Files and versions; also conditions of the comparison.
     facts: number;
@@ -20,11 +20,11 @@ export interface Room {
 const [fewRows, fewestRows] = [8, 3];
 
 /// From everything to what fits with the longest data. Every entry shows at most what the entry before shows.
-export function roomsOf(sheet: Sheet): Room[] {
+export function roomsOf(data: SheetData, sheet: Sheet): Room[] {
     const parts = sheet.inspection?.rows.length ?? 0;
     const labels = sheet.inspection?.labels.length ?? 0;
     const facts = Math.max(sheet.facts.length, sheet.inspection?.facts.length ?? 0);
-    const notes = Math.max(sheet.doubts.length + sheet.warnings.length, sheet.reasons.length);
+    const notes = Math.max(sheet.doubts.length + sheet.warnings.length, sheet.reasons.length, data.notes.length);
     const rooms: Room[] = [{ pictures: 0, parts, labels, notes, facts, characters: 4000 }];
     const atMost = (limits: Partial<Room>) => {
         const last = rooms.at(-1)!;

@@ -149,7 +149,7 @@ export const sheetSets: Record<string, () => SheetData> = {
         makeSheet("scans/none.ply", null, { ...noScan, error: `error: ${longDoubt}` }),
         makeSheet("scans/forty.ply", good(5, 40, 20)),
     ]),
-    "sheet-bare": () => makeSheets("bare", [makeSheet("plate.ply", makeInspection({ mean: 0.01, deviation: 0.02, parts: 0, labels: 0, seed: 9, hasLimit: false }), { pictures: [], facts: [] })]),
+    "sheet-bare": () => makeSheets("bare", [makeSheet("plate.ply", makeInspection({ mean: 0.01, deviation: 0.02, parts: 0, labels: 0, seed: 9, hasLimit: false }), { pictures: [], facts: [] })], ["2 pictures could not be read."]),
     "sheet-none": () => makeSheets("none", [makeSheet("plate.ply", null, { ...noScan })]),
     "sheet-many": () => makeSheets("nightly", Array.from({ length: 120 }, (_, index) => makeSheet(`scans/bracket-${index + 1}.ply`, index % 30 === 7 ? bad(index, 40, 20) : good(index, 40, 20), index % 30 === 7 ? failed() : {}))),
 };

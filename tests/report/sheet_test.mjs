@@ -156,7 +156,7 @@ describe("the page of a part", () => {
         assert.doesNotMatch(text, /Passed/);
     });
     browserTest("Part_NoPicturesAndLabels_SaySo", "sheet-bare", {}, async (page) => {
-        assert.match(await page.locator(".sheet").innerText(), /There are no pictures of this part\.[\s\S]*There are no labels\./);
+        assert.match(await page.locator(".sheet").innerText(), /There are no pictures of this part\.[\s\S]*There are no labels\.[\s\S]*2 pictures could not be read\./);
         assert.equal(await page.locator("img, .parts, .files").count(), 0);
     });
     browserTest("Part_NotInspected_SaysWhy", "sheet-none", {}, async (page) => {
