@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -46,11 +47,15 @@ public:
 
     /// Adds the sheets of the named parts.
     void add_sheets(const std::string& parts) {
+        // A scan that cannot be read has no steps, but its workflow and variant inspect other parts.
+        std::set<std::pair<std::string, std::string>> inspecting;
+        for (const CellRecord& cell : run_.cells)
+            if (CellFiles(cell, steps_, library_).inspection()) inspecting.emplace(cell.workflow, cell.variant);
         std::vector<std::string> inspected;
         bool is_cell = false;
         for (const CellComparison& cell : comparison_.cells) {
             const CellRecord* record = records_.of(cell);
-            const bool is_part = record && CellFiles(*record, steps_, library_).inspection();
+            const bool is_part = record && inspecting.contains({cell.workflow, cell.variant});
             if (is_part) inspected.push_back(cell.scan);
             is_cell = is_cell || is_named(cell, parts);
             if (is_part && is_named(cell, parts)) add_sheet(cell, *record);
@@ -72,6 +77,7 @@ public:
         for (std::size_t sheet = 0; sheet < document_.sheets.size(); ++sheet) {
             const CellFiles files(*record_of_sheet_[sheet], steps_, library_);
             const InspectionStep inspection = files.inspection();
+            if (!inspection) continue;
             for (const OutputRecord* picture : files.pictures_of(*inspection.step))
                 if (document_.sheets[sheet].pictures.size() < most_pictures && sha256_of(path_of(*picture)) == picture->sha256)
                     add_picture(document_.sheets[sheet], picture->sha256, path_of(*picture));
@@ -115,7 +121,7 @@ private:
             if (!step.filter.empty())
                 filters += fmt::format("{}{} {}", filters.empty() ? "" : ", ", step.filter, step.filter_version);
         }
-        sheet.facts = {{"scan", files.scan().path},
+        sheet.facts = {{"scan", record.scan},
                        {"nominal", files.truth().path},
                        {"workflow", cell.workflow},
                        {"filters and versions", filters},
