@@ -9,8 +9,10 @@ import type { Report } from "./report.ts";
 export function findings(cell: Cell): HTMLElement | null {
     const known = cell.known && element("p", { class: "known-note" },
         element("strong", null, "Known. "), `Acknowledged by ${cell.known.who}, ${format.day(cell.known.at)}: ${cell.known.why}`);
+    // The doubts are the reasons of a doubtful cell, and the error begins with that of a failed one.
+    const reasons = cell.reasons.filter((reason) => !cell.doubts.includes(reason) && !cell.error.startsWith(reason));
     const parts = [
-        list("Reasons", cell.reasons),
+        list("Reasons", reasons),
         list("Causes", cell.causes),
         cell.error !== "" && element("div", { class: "finding failed" }, element("h3", null, "Error"), element("pre", null, cell.error)),
         list("Doubts", cell.doubts, "doubtful", known),
