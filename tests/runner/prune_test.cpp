@@ -157,6 +157,31 @@ TEST_F(Prune, AnOutputThatAKeptRunReads_Stays) {
     EXPECT_TRUE(exists("sub/a.ply"));
 }
 
+TEST_F(Prune, PreviewsOfRemovedRuns_Go) {
+    if (!fs::exists(fs::path(build_folder()) / "share/scanmill/report/page.html"))
+        GTEST_SKIP() << "the report page is not built; it needs Node and npm";
+    const auto previews = [&] {
+        std::size_t count = 0;
+        for (const auto& entry : fs::directory_iterator(folder_ / "out/previews"))
+            count += entry.path().extension() == ".png";
+        return count;
+    };
+    folder_.write("b.xyz", "0 0 0\n1 0 0\n0 3 0\n1 2 5\n");
+    run("a.xyz");
+    scanmill({"report", "out", "--html", "page.html"});
+    const std::size_t of_first = previews();
+    ASSERT_GE(of_first, 1u);
+    run("b.xyz");
+    scanmill({"report", "out", "--html", "page.html"});
+    const std::size_t of_both = previews();
+    ASSERT_GT(of_both, of_first);
+    EXPECT_THAT(prune("1", {"--dry-run"}).out, HasSubstr("would remove previews for pages ("));
+    EXPECT_EQ(previews(), of_both);
+    EXPECT_THAT(prune("1").out, HasSubstr("removed previews for pages ("));
+    EXPECT_EQ(previews(), of_both - of_first);
+    EXPECT_THAT(prune("1").out, Not(HasSubstr("previews")));
+}
+
 TEST_F(Prune, DryRun_NamesTheFilesAndRemovesNothing) {
     run("a.xyz");
     run("b.xyz");

@@ -167,6 +167,26 @@ TEST_F(ReportPage, FilesThatAreGone_LeaveOutTheirPicturesAndNothingElse) {
     EXPECT_THAT(page["notes"].dump(), HasSubstr("a preview is missing"));
 }
 
+TEST_F(ReportPage, UnitsThatDifferBetweenScans_StayWithTheirNumbers) {
+    add_scan("a");
+    add_scan("b");
+    write_batch();
+    folder_.write("b.yaml",
+                  "scanmill: 1\nbatch: b\nscans:\n  - {path: scans/a.ply, unit: mm, truth: {path: models/a.ply, unit: mm}}\n"
+                  "  - {path: scans/b.ply, unit: in, truth: {path: models/b.ply, unit: in}}\n"
+                  "workflows: [mesh.yaml]\nmeasure: {samples: 500}\n");
+    night();
+    std::map<std::string, std::string> texts;
+    const nlohmann::json page = page_data();
+    for (const nlohmann::json& cell : page["cells"])
+        for (const nlohmann::json& value : cell["values"])
+            if (value["name"] == "hausdorff") texts[cell["scan"]] = value["text"];
+    EXPECT_THAT(texts["scans/a.ply"], testing::EndsWith(" mm"));
+    EXPECT_THAT(texts["scans/b.ply"], testing::EndsWith(" in"));
+    EXPECT_EQ(page["cells"][1]["deviation-unit"], "in");
+    EXPECT_THAT(page["cells"][0]["pictures"], testing::Contains(testing::_).Times(4));
+}
+
 TEST_F(ReportPage, ABatchWritesItsPage) {
     add_scan("a");
     write_batch();
