@@ -175,10 +175,10 @@ void add_report(CLI::App& app, Action& chosen) {
     CLI::Option* html = command.add_option(
         "--html", options.html,
         "Write the report as one HTML file with pictures, which opens from disk. Previews are kept in DIR/previews");
-    CLI::Option* sheet = command.add_option(
-        "--sheet", options.sheet,
-        "Write inspected parts to the file of --html, an A4 page each, instead of the report: a scan, 'SCAN [VARIANT]', "
-        "a folder of scans, or . for all parts of the run");
+    CLI::Option* sheet = command.add_option("--sheet", options.sheet,
+                                            "Write inspected parts to the file of --html, an A4 page each, instead of "
+                                            "the report: a scan, 'SCAN [VARIANT]', "
+                                            "a folder of scans, or . for all parts of the run");
     sheet->needs(html);
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");

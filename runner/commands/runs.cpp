@@ -241,9 +241,8 @@ int prune_runs(const Options& options) {
     const Pruned pruned = prune(options.folder, static_cast<std::size_t>(*options.keep), options.dry_run,
                                 options.command_line, print_warning);
     if (options.json) {
-        PrunedDocument document{pruned.runs,          {},
-                                pruned.bytes,         pruned.preview_bytes,
-                                pruned.records_before, pruned.records_after};
+        PrunedDocument document{pruned.runs,         {}, pruned.bytes, pruned.preview_bytes, pruned.records_before,
+                                pruned.records_after};
         for (const std::filesystem::path& file : pruned.files) document.files.push_back(file.string());
         print_document(json_of(document));
         return done;

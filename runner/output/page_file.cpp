@@ -29,7 +29,8 @@ void require_replaceable(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     if (!std::filesystem::is_regular_file(file, ignored) || !is_page(text))
-        throw Error("'{}' exists and is not a page of this program", file.string()).hint("choose another name for the page");
+        throw Error("'{}' exists and is not a page of this program", file.string())
+            .hint("choose another name for the page");
 }
 
 PreviewSettings preview_settings() {

@@ -171,10 +171,11 @@ TEST_F(ReportPage, UnitsThatDifferBetweenScans_StayWithTheirNumbers) {
     add_scan("a");
     add_scan("b");
     write_batch();
-    folder_.write("b.yaml",
-                  "scanmill: 1\nbatch: b\nscans:\n  - {path: scans/a.ply, unit: mm, truth: {path: models/a.ply, unit: mm}}\n"
-                  "  - {path: scans/b.ply, unit: in, truth: {path: models/b.ply, unit: in}}\n"
-                  "workflows: [mesh.yaml]\nmeasure: {samples: 500}\n");
+    folder_.write(
+        "b.yaml",
+        "scanmill: 1\nbatch: b\nscans:\n  - {path: scans/a.ply, unit: mm, truth: {path: models/a.ply, unit: mm}}\n"
+        "  - {path: scans/b.ply, unit: in, truth: {path: models/b.ply, unit: in}}\n"
+        "workflows: [mesh.yaml]\nmeasure: {samples: 500}\n");
     night();
     std::map<std::string, std::string> texts;
     const nlohmann::json page = page_data();
@@ -200,7 +201,8 @@ TEST_F(ReportPage, ABatchWritesItsPage) {
 TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     folder_.write("page.html", "mine");
     EXPECT_THAT(scanmill({"report", "out", "--html", "new.html"}).err, HasSubstr("there are no records in 'out'"));
-    EXPECT_THAT(scanmill({"report", "out", "--html", "page.html"}).err, HasSubstr("exists and is not a page of this program"));
+    EXPECT_THAT(scanmill({"report", "out", "--html", "page.html"}).err,
+                HasSubstr("exists and is not a page of this program"));
     EXPECT_EQ(content_of(folder_ / "page.html"), "mine");
     add_scan("a");
     write_batch();
@@ -208,7 +210,8 @@ TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     EXPECT_EQ(scanmill({"report", "out", "--html", "page.html", "--json"}).exit_code, 2);
     for (const char* file : {"out/scanmill.sqlite", "out/a.ply"}) {
         const std::string before = content_of(folder_ / file);
-        EXPECT_THAT(scanmill({"report", "out", "--html", file}).err, HasSubstr("exists and is not a page of this program"));
+        EXPECT_THAT(scanmill({"report", "out", "--html", file}).err,
+                    HasSubstr("exists and is not a page of this program"));
         EXPECT_EQ(content_of(folder_ / file), before);
     }
     folder_.write("file", "x");

@@ -141,7 +141,8 @@ TEST_F(ReportSheet, WrongNames_AreRefusedWithTheInspectedParts) {
     EXPECT_EQ(scanmill({"report", "out", "--sheet", "parts/good.ply"}).exit_code, 2) << "--html is missing";
     EXPECT_EQ(scanmill({"report", "out", "--sheet", ".", "--html", "x.html", "--against", "out"}).exit_code, 2);
     folder_.write("b.yaml", "mine");
-    EXPECT_THAT(scanmill({"report", "out", "--sheet", ".", "--html", "b.yaml"}).err, HasSubstr("is not a page of this program"));
+    EXPECT_THAT(scanmill({"report", "out", "--sheet", ".", "--html", "b.yaml"}).err,
+                HasSubstr("is not a page of this program"));
     EXPECT_EQ(scanmill({"run", "scan.yaml", "-o", "other", "-q"}).exit_code, 0);
     EXPECT_THAT(scanmill({"report", "other", "--sheet", ".", "--html", "x.html"}).err,
                 HasSubstr("the workflow needs a step that compares the part with its nominal"));

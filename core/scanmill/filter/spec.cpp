@@ -150,9 +150,10 @@ void require_sound_inspection(const FilterSpec& spec) {
     require_metrics(inspects.label, true);
     require_metrics(inspects.numbers, true);
     if (inspects.tolerance.size() != 2 || inspects.range.size() != 2 || inspects.label.size() != 4)
-        throw Error("filter {}: it inspects with {} limits, {} ends of the range and {} metrics of a label; expected "
-                    "2, 2 and 4",
-                    spec.name, inspects.tolerance.size(), inspects.range.size(), inspects.label.size());
+        throw Error(
+            "filter {}: it inspects with {} limits, {} ends of the range and {} metrics of a label; expected "
+            "2, 2 and 4",
+            spec.name, inspects.tolerance.size(), inspects.range.size(), inspects.label.size());
 }
 
 void require_sound_drawing(const FilterSpec& spec) {

@@ -94,8 +94,8 @@ constexpr auto fields(const MeasureSpec*) {
         field("column", &T::column, "The vertex column of this output with the signed distance.").optional()};
 }
 
-/// For filters that compare a part with its nominal and give a verdict. Metrics of the whole nominal and of its parts are
-/// numbered: NAME is of the whole, NAME@2 … of the parts.
+/// For filters that compare a part with its nominal and give a verdict. Metrics of the whole nominal and of its parts
+/// are numbered: NAME is of the whole, NAME@2 … of the parts.
 struct InspectSpec {
     std::string part, nominal;  ///< names of inputs
     std::vector<std::string> outputs;  ///< outputs with the deviation in `column`, the best to look at first
@@ -110,15 +110,16 @@ struct InspectSpec {
 };
 constexpr auto fields(const InspectSpec*) {
     using T = InspectSpec;
-    return std::tuple{field("part", &T::part),
-                      field("nominal", &T::nominal),
-                      field("outputs", &T::outputs, "Outputs with the deviation, the best to look at first."),
-                      field("column", &T::column, "The column of these outputs with the deviation."),
-                      field("tolerance", &T::tolerance, "Metrics: lowest and highest deviation in tolerance."),
-                      field("range", &T::range, "Metrics: both ends of the histogram and of the colours."),
-                      field("histogram", &T::histogram, "Numbered metric: the shares in equal bins."),
-                      field("label", &T::label, "Numbered metrics: the largest deviations, and x, y, z of their points."),
-                      field("numbers", &T::numbers, "Numbered metrics to show for each part.")};
+    return std::tuple{
+        field("part", &T::part),
+        field("nominal", &T::nominal),
+        field("outputs", &T::outputs, "Outputs with the deviation, the best to look at first."),
+        field("column", &T::column, "The column of these outputs with the deviation."),
+        field("tolerance", &T::tolerance, "Metrics: lowest and highest deviation in tolerance."),
+        field("range", &T::range, "Metrics: both ends of the histogram and of the colours."),
+        field("histogram", &T::histogram, "Numbered metric: the shares in equal bins."),
+        field("label", &T::label, "Numbered metrics: the largest deviations, and x, y, z of their points."),
+        field("numbers", &T::numbers, "Numbered metrics to show for each part.")};
 }
 
 /// For filters that draw a value: the name of this input. The first output is the picture. The other members are empty

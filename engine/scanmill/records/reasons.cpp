@@ -72,8 +72,7 @@ public:
     const std::vector<PastStep>& of(const RunGraph& graph, const RunNode& node) {
         std::tuple names(workflow_name(*graph.plans[node.plan]), graph.scan_names[node.scan], graph.label(node));
         const auto [found, is_new] = steps_.try_emplace(names);
-        if (is_new)
-            found->second = records_.last_steps(std::get<0>(names), std::get<1>(names), std::get<2>(names));
+        if (is_new) found->second = records_.last_steps(std::get<0>(names), std::get<1>(names), std::get<2>(names));
         return found->second;
     }
 
@@ -91,8 +90,8 @@ std::string reason(const std::vector<NodePrediction>& prediction, FilterLibrary&
         for (const auto& [name, value] : step->parameters.values) now.parameters.emplace_back(name, text(value));
     const PastStep* nearest = &past.front();
     if (node.step && past.size() > 1)
-        nearest = &*std::ranges::min_element(
-            past, {}, [&](const PastStep& step) { return distance(now, graph, library, step); });
+        nearest = &*std::ranges::min_element(past, {},
+                                             [&](const PastStep& step) { return distance(now, graph, library, step); });
     const std::vector<std::string> least = differences(prediction, library, graph, now, *nearest);
     const std::int64_t run = past.front().run;
     if (least.empty() && std::ranges::any_of(past, [](const PastStep& step) { return !step.done; }))

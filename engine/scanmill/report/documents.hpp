@@ -67,7 +67,8 @@ struct PrunedDocument {
 };
 constexpr auto fields(const PrunedDocument*) {
     using R = PrunedDocument;
-    return std::tuple{field("runs", &R::runs, "Numbers of the removed runs."), field("files", &R::files),
+    return std::tuple{field("runs", &R::runs, "Numbers of the removed runs."),
+                      field("files", &R::files),
                       field("bytes", &R::bytes, "Size of the removed files."),
                       field("preview-bytes", &R::preview_bytes, "Size of the removed previews."),
                       field("records-before", &R::records_before, "Size of the file with the records before."),

@@ -39,9 +39,10 @@ struct InputRecord {
 };
 constexpr auto fields(const InputRecord*) {
     using R = InputRecord;
-    return std::tuple{field("port", &R::port, "Name of the filter's input."),
-                      field("step", &R::step, "Number of the step whose result it is."),
-                      field("output", &R::output, "Output of that step; absent for a step that reads a file.").optional()};
+    return std::tuple{
+        field("port", &R::port, "Name of the filter's input."),
+        field("step", &R::step, "Number of the step whose result it is."),
+        field("output", &R::output, "Output of that step; absent for a step that reads a file.").optional()};
 }
 
 struct StepRecord {

@@ -53,8 +53,7 @@ const StepRecord* CellFiles::step(std::size_t node) const {
 
 static LengthUnit declared_unit(const StepRecord& read) {
     const auto unit = std::ranges::find(read.authored, "unit", &std::pair<std::string, std::string>::first);
-    return unit == read.authored.end() ? LengthUnit::unknown
-                                       : length_unit(unit->second).value_or(LengthUnit::unknown);
+    return unit == read.authored.end() ? LengthUnit::unknown : length_unit(unit->second).value_or(LengthUnit::unknown);
 }
 
 CellFile CellFiles::scan() const {

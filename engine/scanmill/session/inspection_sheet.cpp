@@ -62,12 +62,11 @@ public:
         }
         if (!document_.sheets.empty()) return;
         inspected.erase(std::unique(inspected.begin(), inspected.end()), inspected.end());
-        const std::string hint = inspected.empty()
-                                     ? "the workflow needs a step that compares the part with its nominal"
-                                     : "inspected are " + enumerated(inspected);
-        throw is_cell ? Error("run {} does not inspect '{}'", comparison_.run.id, parts).hint(hint)
-                      : Error("run {} has no scan '{}'{}", comparison_.run.id, parts, did_you_mean(parts, inspected))
-                            .hint(hint);
+        const std::string hint = inspected.empty() ? "the workflow needs a step that compares the part with its nominal"
+                                                   : "inspected are " + enumerated(inspected);
+        throw is_cell
+            ? Error("run {} does not inspect '{}'", comparison_.run.id, parts).hint(hint)
+            : Error("run {} has no scan '{}'{}", comparison_.run.id, parts, did_you_mean(parts, inspected)).hint(hint);
     }
 
     void add_pictures(FilterLibrary& library, const PreviewSettings& settings,
@@ -79,7 +78,8 @@ public:
             const InspectionStep inspection = files.inspection();
             if (!inspection) continue;
             for (const OutputRecord* picture : files.pictures_of(*inspection.step))
-                if (document_.sheets[sheet].pictures.size() < most_pictures && sha256_of(path_of(*picture)) == picture->sha256)
+                if (document_.sheets[sheet].pictures.size() < most_pictures &&
+                    sha256_of(path_of(*picture)) == picture->sha256)
                     add_picture(document_.sheets[sheet], picture->sha256, path_of(*picture));
             const OutputRecord* map = files.deviation_map(inspection);
             if (!document_.sheets[sheet].pictures.empty() || !map || !document_.sheets[sheet].inspection) continue;
@@ -91,7 +91,8 @@ public:
             Sheet& sheet = document_.sheets[sheet_of_wish[wish]];
             add_picture(sheet, previews[wish].key, previews[wish].deviation);
             if (!previews[wish].reason.empty())
-                document_.notes.push_back(fmt::format("a picture of {} is missing: {}", sheet.scan, previews[wish].reason));
+                document_.notes.push_back(
+                    fmt::format("a picture of {} is missing: {}", sheet.scan, previews[wish].reason));
         }
         leave_out_pictures();
     }
@@ -168,9 +169,9 @@ private:
             });
         });
         if (left_out > 0)
-            document_.notes.push_back(fmt::format("{} left out, because all would have more than {} MB; name fewer parts",
-                                                  count_text(left_out, "picture is", "pictures are"),
-                                                  most_bytes / 1'000'000));
+            document_.notes.push_back(
+                fmt::format("{} left out, because all would have more than {} MB; name fewer parts",
+                            count_text(left_out, "picture is", "pictures are"), most_bytes / 1'000'000));
     }
 
     const fs::path folder_;

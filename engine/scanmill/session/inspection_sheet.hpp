@@ -14,7 +14,8 @@ namespace scanmill {
 inline constexpr const char* sheet_page = "sheet.html";  ///< name of the template
 
 /// The data of one sheet per part. `parts` names them: a scan, 'SCAN [VARIANT]', a folder of scans, or "." for all.
-/// A cell is a part if its workflow and variant have a step that inspects. Parts that failed come first, then in the order of the run.
+/// A cell is a part if its workflow and variant have a step that inspects. Parts that failed come first, then in the
+/// order of the run.
 ///
 /// The pictures of a part are those that its workflow drew of the inspection, at most two. Without such a picture that
 /// still is as it was recorded, one of the written deviations is drawn, and kept as make_previews() keeps it. The

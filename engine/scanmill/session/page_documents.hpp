@@ -149,11 +149,10 @@ struct PageInspection {
 };
 constexpr auto fields(const PageInspection*) {
     using R = PageInspection;
-    return std::tuple{field("step", &R::step),           field("unit", &R::unit),
-                      field("tolerance", &R::tolerance), field("histogram", &R::histogram),
-                      field("expected", &R::expected),   field("columns", &R::columns),
-                      field("rows", &R::rows),           field("labels", &R::labels),
-                      field("facts", &R::facts)};
+    return std::tuple{
+        field("step", &R::step),           field("unit", &R::unit),         field("tolerance", &R::tolerance),
+        field("histogram", &R::histogram), field("expected", &R::expected), field("columns", &R::columns),
+        field("rows", &R::rows),           field("labels", &R::labels),     field("facts", &R::facts)};
 }
 
 struct PageCell {
@@ -309,13 +308,12 @@ struct Sheet {
 };
 constexpr auto fields(const Sheet*) {
     using R = Sheet;
-    return std::tuple{field("workflow", &R::workflow), field("scan", &R::scan),
-                      field("variant", &R::variant),   field("verdict", &R::verdict),
-                      field("outcome", &R::outcome),   field("reasons", &R::reasons),
-                      field("doubts", &R::doubts),     field("known", &R::known),
-                      field("warnings", &R::warnings), field("error", &R::error),
-                      field("facts", &R::facts),       field("inspection", &R::inspection),
-                      field("pictures", &R::pictures)};
+    return std::tuple{
+        field("workflow", &R::workflow), field("scan", &R::scan),       field("variant", &R::variant),
+        field("verdict", &R::verdict),   field("outcome", &R::outcome), field("reasons", &R::reasons),
+        field("doubts", &R::doubts),     field("known", &R::known),     field("warnings", &R::warnings),
+        field("error", &R::error),       field("facts", &R::facts),     field("inspection", &R::inspection),
+        field("pictures", &R::pictures)};
 }
 
 struct SheetDocument {

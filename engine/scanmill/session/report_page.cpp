@@ -338,8 +338,7 @@ private:
                     uses_[wish(*std::move(result), false)].emplace_back(id, Role::accepted);
             if (!scan.path.empty())
                 uses_[wish(wish_for(scan, truth.path.empty() ? scan : truth), true)].emplace_back(id, Role::scan);
-            if (!truth.path.empty())
-                uses_[wish(wish_for(truth, truth), true)].emplace_back(id, Role::truth);
+            if (!truth.path.empty()) uses_[wish(wish_for(truth, truth), true)].emplace_back(id, Role::truth);
         }
     }
 

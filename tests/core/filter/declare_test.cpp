@@ -315,10 +315,15 @@ TEST(Declare, InspectionWithoutItsPortsColumnOrMetrics_IsUnsound) {
     using testing::HasSubstr;
     EXPECT_THAT(refusal([](InspectSpec& spec) { spec.nominal = "model"; }),
                 HasSubstr("'model', which must be a required input"));
-    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.outputs = {"part"}; }), HasSubstr("'part', which must be an output"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.outputs = {"part"}; }),
+                HasSubstr("'part', which must be an output"));
     EXPECT_THAT(refusal([](InspectSpec& spec) { spec.column = "class"; }), HasSubstr("a column that the filter adds"));
-    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.histogram = "low"; }), HasSubstr("'low', which must be a numbered"));
-    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.range = {"low", "share"}; }), HasSubstr("'share', which must be a"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.histogram = "low"; }),
+                HasSubstr("'low', which must be a numbered"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) {
+                    spec.range = {"low", "share"};
+                }),
+                HasSubstr("'share', which must be a"));
     EXPECT_THAT(refusal([](InspectSpec& spec) { spec.tolerance = {"low"}; }), HasSubstr("with 1 limits"));
 }
 

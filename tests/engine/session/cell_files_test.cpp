@@ -76,8 +76,7 @@ TEST_F(CellFilesTest, TruthThatAStepMakes_IsItsWrittenOutput) {
 TEST_F(CellFilesTest, DeviationMapIsTheBestOutputThatWasWritten_AlsoBelowFailed) {
     run_.steps = {read_step(0, "scan.ply"), read_step(1, "nominal.stl"),
                   filter_step(2, "inspect", {{"scan", 0, ""}, {"nominal", 1, ""}}),
-                  filter_step(3, "render", {{"scene", 2, "deviation"}}),
-                  filter_step(4, "render", {{"scene", 0, ""}})};
+                  filter_step(3, "render", {{"scene", 2, "deviation"}}), filter_step(4, "render", {{"scene", 0, ""}})};
     cell_.outputs = {output_of(2, "deviation", "deviation.ply", "points"),
                      output_of(2, "on-nominal", "on-nominal.ply", "mesh", Outcome::skipped),
                      output_of(3, "picture", "deviation.png", "picture"),
