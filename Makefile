@@ -137,7 +137,7 @@ wheel: packages-deps release ## make dist/scanmill-….whl for pip: LIGHT=1 leav
 deb: packages-deps release ## make dist/scanmill_….deb for Debian 12
 	packaging/deb/build.sh build/release dist
 
-image: deb ## make dist/scanmill-…-image.tar, a root file system with the .deb, for podman and docker
+image: deb ## make dist/scanmill-…-image.tar.gz, a root file system with the .deb, for podman and docker
 	packaging/image.sh dist
 
 test-packages: data wheel image ## install the wheel and the .deb in empty systems and test them there; needs root

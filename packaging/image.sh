@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# image.sh DIST: makes a root file system of Debian 12 with the .deb in DIST, DIST/scanmill-VERSION-image.tar, for
+# image.sh DIST: makes a root file system of Debian 12 with the .deb in DIST, DIST/scanmill-VERSION-image.tar.gz, for
 #
-#     podman import --change 'ENTRYPOINT ["scanmill"]' --change 'WORKDIR /work' DIST/scanmill-VERSION-image.tar scanmill
+#     podman import --change 'ENTRYPOINT ["scanmill"]' --change 'WORKDIR /work' DIST/scanmill-VERSION-image.tar.gz scanmill
 #     podman run --rm --user "$(id -u):$(id -g)" -e HOME=/tmp -v "$PWD:/work" scanmill run quickstart scan.ply
 #
 # docker takes the same arguments.
@@ -10,8 +10,8 @@ set -euo pipefail
 dist=$(realpath "$1")
 package=$(ls "$dist"/scanmill_*.deb)
 version=$(dpkg-deb -f "$package" Version)
-image=$dist/scanmill-${version%-*}-image.tar
-rm -f "$dist"/scanmill-*-image.tar
+image=$dist/scanmill-${version%-*}-image.tar.gz
+rm -f "$dist"/scanmill-*-image.tar.gz
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # Documentation and translations are left out, licences are not.

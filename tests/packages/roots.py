@@ -7,6 +7,7 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 ROOTS = pathlib.Path(os.environ.get("SCANMILL_PACKAGE_ROOTS", SOURCE / "build/packages/roots"))
+CHROOT = shutil.which("chroot") or "/usr/sbin/chroot"
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 
 
@@ -44,7 +45,7 @@ class Root:
         """Runs the command in bash; without `environment`, HOME is /root."""
         variables = {"PATH": PATH, "LANG": "C.UTF-8", **({"HOME": "/root"} if environment is None else environment)}
         return subprocess.run(
-            ["chroot", f"--userspec={user}", self.path, "/bin/bash", "-c", command],
+            [CHROOT, f"--userspec={user}", self.path, "/bin/bash", "-c", command],
             env=variables, capture_output=True, text=True, check=False)
 
     def must(self, command: str, **options) -> str:
