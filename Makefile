@@ -29,8 +29,9 @@ test-report: ## test the report page in a headless browser; needs Node and Chrom
 paper: release data ## make docs/bernardini-1997.md: every stage of the paper's pipeline on one scan, with pictures
 	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
 
-pictures: release data ## draw the pictures of README and pages with the filter render
+pictures: release data ## draw the pictures of README and pages with the filter render, and of report pages in Chromium
 	tools/rendered_pictures.sh build/release/bin/scanmill build/data
+	tools/page_pictures.sh build/release/bin/scanmill
 
 test: dev data ## build with assertions on and run every test
 	tools/test.sh dev -j $(jobs)

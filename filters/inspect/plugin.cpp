@@ -117,6 +117,16 @@ Filter declaration() {
         .metric("alignment-rms", Unit::length, "Distance that the alignment left, from the transform.",
                 smaller_is_better)
         .metric("diagonal", Unit::length, "Diagonal of the bounding box of the nominal.");
+    filter.inspects({.part = "scan",
+                     .nominal = "nominal",
+                     .outputs = {"on-nominal", "deviation"},
+                     .column = "deviation",
+                     .tolerance = {"tolerance-low", "tolerance-high"},
+                     .range = {"range-low", "range-high"},
+                     .histogram = "histogram",
+                     .label = {"label", "label-x", "label-y", "label-z"},
+                     .numbers = {"in-tolerance", "above", "below", "min", "max", "mean", "standard-deviation", "p1",
+                                 "p50", "p99", "points"}});
     filter.doubts({"more than 50 % of the points are too far from the nominal to count, or have no sure sign",
                    "the nominal is inside out, or its triangles face different sides"});
     filter.run([](const Inputs& inputs, const P& params, Context& context) {

@@ -86,7 +86,7 @@ SCANMILL_FILTER() {
                "mesh.")
         .param("creases", &P::creases,
                "Whether the mesh's sharp edges are drawn; without any, edges of more than 40 degrees.")
-        .draws(DrawSpec{"scene", "truth", "size", "colour", "scale"})
+        .draws(DrawSpec{"scene", "truth", "size", "colour", "scale", "tolerance"})
         .doubts({"the picture shows nothing"})
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("picture", render({drawable_at(inputs, "scene"), drawable_at(inputs, "over"),

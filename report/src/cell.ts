@@ -8,6 +8,7 @@ import { element } from "./element.ts";
 import type { Child } from "./element.ts";
 import * as format from "./format.ts";
 import { histogram } from "./histogram.ts";
+import { inspectionDetails } from "./inspection.ts";
 import { legend } from "./legend.ts";
 import { addressOf, scanName } from "./names.ts";
 import { resultPictures, scanPictures, strip } from "./pictures.ts";
@@ -24,11 +25,12 @@ export function cellDetails(report: Report, cell: Cell, views: HTMLElement | nul
     return element("div", { class: "cell" },
         texts.findings(cell),
         cell.outcome === "failed" && part("End of the log", texts.log(cell)),
+        cell.inspection && part("Inspection", inspectionDetails(cell.inspection, cell.histogram !== null)),
         part("Changes", changes.length > 0 && changeTable(changes, "Changes since the accepted run")),
         part("Pictures", ...pictures(report, cell, onPaper)),
         part("Deviations", ...deviations(report, cell)),
         views && part("In 3D", views),
-        part("Values", texts.values(report, cell)),
+        part("Values", ...texts.values(report, cell)),
         part("Steps", waterfall(cell)),
         part("Output files", texts.outputs(cell)),
         cell.outcome !== "failed" && part("End of the log", texts.log(cell)),

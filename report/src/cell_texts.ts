@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The texts and tables of a cell: reasons, doubts, error, log, values, outputs and the command that reproduces it.
 
-import type { Cell } from "./data.ts";
+import type { Cell, Change, Inspection, Value } from "./data.ts";
 import { element } from "./element.ts";
 import * as format from "./format.ts";
 import type { Report } from "./report.ts";
@@ -9,8 +9,10 @@ import type { Report } from "./report.ts";
 export function findings(cell: Cell): HTMLElement | null {
     const known = cell.known && element("p", { class: "known-note" },
         element("strong", null, "Known. "), `Acknowledged by ${cell.known.who}, ${format.day(cell.known.at)}: ${cell.known.why}`);
+    // The doubts are the reasons of a doubtful cell, and the error begins with that of a failed one.
+    const reasons = cell.reasons.filter((reason) => !cell.doubts.includes(reason) && !cell.error.startsWith(reason));
     const parts = [
-        list("Reasons", cell.reasons),
+        list("Reasons", reasons),
         list("Causes", cell.causes),
         cell.error !== "" && element("div", { class: "finding failed" }, element("h3", null, "Error"), element("pre", null, cell.error)),
         list("Doubts", cell.doubts, "doubtful", known),
@@ -24,13 +26,32 @@ function list(title: string, texts: string[], kind: string | null = null, more: 
     return element("div", { class: `finding ${kind ?? ""}` }, element("h3", null, title), element("ul", null, texts.map((text) => element("li", null, text))), more);
 }
 
-/// A row per value and, beside it, the accepted one.
-export function values(report: Report, cell: Cell): HTMLElement | null {
-    if (cell.values.length === 0) return null;
+/// A row per value and, beside it, the accepted one. Numbered values, such as `label@2`, are folded unless they changed; so
+/// are the values that the section of the inspection shows.
+export function values(report: Report, cell: Cell): HTMLElement[] {
     const changes = new Map(report.changesOf(cell).map((change) => [change.what, change]));
-    const hasAccepted = cell.values.some((value) => value.accepted !== null);
+    const isFolded = (value: Value) => !changes.has(value.name) && (isNumbered(value) || isInspected(value, cell.inspection));
+    const shown = cell.values.filter((value) => !isFolded(value));
+    const folded = cell.values.filter(isFolded);
+    return [
+        ...(shown.length > 0 ? [valueTable("Values", shown, changes)] : []),
+        ...(folded.length > 0 ? [element("details", { class: "numbered" },
+            element("summary", null, format.counted(folded.length, "numbered value")), valueTable("Numbered values", folded, changes))] : []),
+    ];
+}
+
+function isNumbered(value: Value): boolean {
+    return /@\d+$/.test(value.name);
+}
+
+function isInspected(value: Value, inspection: Inspection | null): boolean {
+    return value.source === inspection?.step && /^(histogram|label|label-[xyz])$/.test(value.name);
+}
+
+function valueTable(title: string, values: Value[], changes: Map<string, Change>): HTMLElement {
+    const hasAccepted = values.some((value) => value.accepted !== null);
     let source = "";
-    const rows = cell.values.map((value) => {
+    const rows = values.map((value) => {
         const isNew = value.source !== source;
         source = value.source;
         const change = changes.get(value.name);
@@ -41,8 +62,8 @@ export function values(report: Report, cell: Cell): HTMLElement | null {
             hasAccepted && element("td", { class: "right quiet" }, value.accepted ?? "–"),
             element("td", { class: differs ? "right differs" : "right" }, value.text));
     });
-    return element("div", { class: "scroll", role: "region", "aria-label": "Values", tabindex: 0 },
-        element("table", { class: "values", "aria-label": "Values" },
+    return element("div", { class: "scroll", role: "region", "aria-label": title, tabindex: 0 },
+        element("table", { class: "values", "aria-label": title },
             element("thead", null, element("tr", null,
                 element("th", { scope: "col" }, "Source"), element("th", { scope: "col" }, "Name"),
                 hasAccepted && element("th", { scope: "col", class: "right" }, "Accepted"),

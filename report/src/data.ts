@@ -113,7 +113,7 @@ export interface Inspection {
     columns: { name: string; help: string }[];
     /// The whole nominal first, then its parts by number. One text per column; empty: a part without points.
     rows: { part: string; texts: string[] }[];
-    /// The points that deviate most, as they are numbered in pictures.
+    /// The points that deviate most, the largest deviation first.
     labels: { deviation: string; value: number; position: [string, string, string] }[];
     /// The step's other numbers, such as alignment, chord error and points that do not count.
     facts: { name: string; text: string; help: string }[];

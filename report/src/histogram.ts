@@ -28,7 +28,8 @@ export function histogram(data: Histogram, unit: string, title: string, top: num
         element("figcaption", null, title));
 }
 
-function description(data: Histogram, unit: string): string {
+/// The histogram in words.
+export function description(data: Histogram, unit: string): string {
     const most = data.shares.reduce((best, share, index) => (share > data.shares[best]! ? index : best), 0);
     const width = (data.high - data.low) / data.shares.length;
     const from = data.low + most * width;

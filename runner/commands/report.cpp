@@ -23,7 +23,7 @@ struct Options {
     std::filesystem::path folder;
     std::string against, who, why, metric, format = "text", table;
     std::optional<std::int64_t> run;
-    std::string acknowledge;
+    std::string acknowledge, sheet;
     std::filesystem::path html;
     bool accept = false, revoke = false, strict = false, json = false;
 };
@@ -119,6 +119,10 @@ int report(const Options& options) {
         return done;
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
+    if (!options.sheet.empty()) {
+        write_sheet_file(options.html, which, options.sheet);
+        return done;
+    }
     if (!options.html.empty()) write_page_file(options.html, which, against);
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
     if (!options.metric.empty()) require_metric(options.metric, comparison);
@@ -171,6 +175,11 @@ void add_report(CLI::App& app, Action& chosen) {
     CLI::Option* html = command.add_option(
         "--html", options.html,
         "Write the report as one HTML file with pictures, which opens from disk. Previews are kept in DIR/previews");
+    CLI::Option* sheet = command.add_option(
+        "--sheet", options.sheet,
+        "Write inspected parts to the file of --html, an A4 page each, instead of the report: a scan, 'SCAN [VARIANT]', "
+        "a folder of scans, or . for all parts of the run");
+    sheet->needs(html);
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");
     format->excludes(json);
@@ -178,6 +187,7 @@ void add_report(CLI::App& app, Action& chosen) {
     for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
     accept->excludes(revoke);
     acknowledge->excludes(accept)->excludes(revoke);
+    sheet->excludes(against);
     for (CLI::Option* action : {accept, revoke, acknowledge})
         for (CLI::Option* other : {against, metric, format, table, json, html}) action->excludes(other);
 }

@@ -241,7 +241,9 @@ int prune_runs(const Options& options) {
     const Pruned pruned = prune(options.folder, static_cast<std::size_t>(*options.keep), options.dry_run,
                                 options.command_line, print_warning);
     if (options.json) {
-        PrunedDocument document{pruned.runs, {}, pruned.bytes, pruned.records_before, pruned.records_after};
+        PrunedDocument document{pruned.runs,          {},
+                                pruned.bytes,         pruned.preview_bytes,
+                                pruned.records_before, pruned.records_after};
         for (const std::filesystem::path& file : pruned.files) document.files.push_back(file.string());
         print_document(json_of(document));
         return done;
@@ -251,6 +253,9 @@ int prune_runs(const Options& options) {
     fmt::print("{} {} ({}) and {} ({})\n", options.dry_run ? "would remove" : "removed",
                count_text(pruned.runs.size(), "run", "runs"), numbers_text(pruned.runs),
                count_text(pruned.files.size(), "file", "files"), byte_size_text(pruned.bytes));
+    if (pruned.preview_bytes > 0)
+        fmt::print("{} previews for pages ({})\n", options.dry_run ? "would remove" : "removed",
+                   byte_size_text(pruned.preview_bytes));
     if (!options.dry_run && !pruned.runs.empty())
         fmt::print("the records had {}, and have {}\n", byte_size_text(pruned.records_before),
                    byte_size_text(pruned.records_after));

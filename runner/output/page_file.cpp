@@ -12,42 +12,70 @@
 #include "output/reproduce.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/io/atomic_file.hpp"
+#include "scanmill/session/inspection_sheet.hpp"
+#include "scanmill/session/page_template.hpp"
 #include "scanmill/session/report_page.hpp"
 
 namespace scanmill::runner {
 
-/// Throws Error for a file that exists and is not a report page, such as the records or a result.
-static void require_replaceable(const std::filesystem::path& file) {
+namespace {
+
+/// Throws Error for a file that exists and is not a page, such as the records or a result.
+void require_replaceable(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return;
     std::ifstream stream(file, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
-    if (!std::filesystem::is_regular_file(file, ignored) || !is_report_page(text))
-        throw Error("'{}' exists and is not a report page", file.string()).hint("choose another name for the page");
+    if (!std::filesystem::is_regular_file(file, ignored) || !is_page(text))
+        throw Error("'{}' exists and is not a page of this program", file.string()).hint("choose another name for the page");
 }
 
-void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
-                     const std::optional<RecordedRun>& against) {
-    std::string page = page_template();
-    require_replaceable(file);
-    FilterLibrary library = open_library();
+PreviewSettings preview_settings() {
     PreviewSettings settings;
     settings.jobs = std::max(1u, std::thread::hardware_concurrency());
     settings.worker_command = {"/proc/self/exe", "worker"};
-    const PageDocument document =
-        page_document(which, against, reproducing_command, library, settings, warning_printer());
+    return settings;
+}
+
+/// Writes the page with the data of `document`.
+template <class Document>
+void write(const std::filesystem::path& file, std::string page, const Document& document) {
     std::error_code ignored;  // the file then cannot be written, either
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
     try {
         AtomicFile written(file);
-        written.write(page_with(std::move(page), document));
+        written.write(page_with(std::move(page), json_of(document)));
         written.commit();
     } catch (const Error& error) {
         throw error.reworded(fmt::format("'{}' {}", file.string(), error.sentence()));
     }
     for (const std::string& note : document.notes) print_warning(note);
+}
+
+}  // namespace
+
+void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
+                     const std::optional<RecordedRun>& against) {
+    std::string page = page_template(report_page);
+    require_replaceable(file);
+    FilterLibrary library = open_library();
+    const PageDocument document =
+        page_document(which, against, reproducing_command, library, preview_settings(), warning_printer());
+    write(file, std::move(page), document);
     fmt::print("the page of {} is {}\n", printable_line(document.batch), printable_line(file.string()));
+}
+
+void write_sheet_file(const std::filesystem::path& file, const RecordedRun& which, const std::string& parts) {
+    std::string page = page_template(sheet_page);
+    require_replaceable(file);
+    FilterLibrary library = open_library();
+    const SheetDocument document = sheet_document(which, parts, library, preview_settings(), warning_printer());
+    write(file, std::move(page), document);
+    fmt::print("the {} of {} {} {}\n", by_count(document.sheets.size(), "sheet", "sheets"),
+               count_text(document.sheets.size(), "part", "parts"), by_count(document.sheets.size(), "is", "are in"),
+               printable_line(file.string()));
 }
 
 }  // namespace scanmill::runner

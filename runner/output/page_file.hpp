@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Writes the report page of a run to a file.
+/// Writes pages of a run to files.
+///
+/// Both functions make the missing previews, write the page, and print its path on stdout and its notes as warnings on
+/// stderr. The file appears whole or not at all. They throw Error if the program has no such page, for a folder without
+/// records, for a file that exists and is not a page, and if the file cannot be written.
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "scanmill/compare/recorded.hpp"
 
 namespace scanmill::runner {
 
-/// Makes the missing previews, writes the page, and prints its path on stdout and its notes as warnings on stderr. The
-/// file appears whole or not at all. Throws Error if the program has no page, for a folder without records, and if the
-/// file cannot be written.
+/// Writes the report page.
 void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
                      const std::optional<RecordedRun>& against);
+
+/// Writes the sheets of the inspected parts that `parts` names, as sheet_document() does.
+void write_sheet_file(const std::filesystem::path& file, const RecordedRun& which, const std::string& parts);
 
 }  // namespace scanmill::runner

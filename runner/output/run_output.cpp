@@ -161,7 +161,8 @@ void EventStream::node_ended(const RunNode& node, const NodeReport& report) {
 }
 
 void EventStream::output_written(const RunCell& cell, const OutputReport& report) {
-    print("output-written", json_of(OutputWrittenEvent{graph_.scan_names[cell.scan], output_record(report)}));
+    const auto output = std::ranges::find(cell.outputs, report.file, &RunOutput::file);
+    print("output-written", json_of(OutputWrittenEvent{graph_.scan_names[cell.scan], output_record(*output, report)}));
 }
 
 void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Writes pages with made-up data into a folder: make_data TEMPLATE FOLDER.
+/// Writes pages with made-up data into a folder: make_data REPORT-TEMPLATE SHEET-TEMPLATE FOLDER.
 
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import type { Cell, Change, Histogram, ReportData, Run, Step, Verdict } from "../../report/src/data.ts";
 import * as format from "../../report/src/format.ts";
+import { inspectedValues, makeInspection, sheetSets } from "./make_inspections.ts";
 import { encode, picture, random, torus } from "./shapes.ts";
 import type { Shape } from "./shapes.ts";
 
@@ -99,7 +100,7 @@ function addCell(data: ReportData, options: Options, scan: Scan, index: number, 
         id, workflow, scan: scan.path, variant, verdict, outcome: verdict === "failed" ? "failed" : verdict === "missing" ? "skipped" : verdict === "doubtful" ? "doubtful" : "ok",
         seconds: hasResult ? 3.4 * step : 1.2, reasons: [], causes: [], doubts: [], warnings: [], known: null,
         command: `scanmill batch library.yaml --scan ${quoted(scan.path)} --only ${variant} -o reproduced`, error: "", log: "", values: [], steps: [], outputs: [], pictures: {}, mesh: null,
-        "deviation-unit": scan.unit, histogram: null,
+        "deviation-unit": scan.unit, histogram: null, inspection: null,
     };
     data.cells.push(cell);
     data.counts[verdict] = (data.counts[verdict] ?? 0) + 1;
@@ -234,17 +235,36 @@ export const sets: Record<string, () => ReportData> = {
     first: () => makeData({ batch: "first-night", scans: 5, variants: ["default", "fine"], runs: 1, isAccepted: false, hasPictures: true, workflows: ["solid", "open"] }),
     one: () => makeData({ batch: "one", scans: 1, variants: ["default"], runs: 3, isAccepted: true, hasPictures: true }),
     none: () => makeData({ batch: "none", scans: 0, variants: [], runs: 0, isAccepted: false, hasPictures: false }),
+    inspected: () => inspected(),
     many: () => makeData({ batch: "many", scans: 1250, variants: [...allVariants, "seventh", "eighth"], runs: 30, isAccepted: true, hasPictures: false }),
 };
 
-const [template, folder] = process.argv.slice(2);
-if (template && folder) {
+/// Cells that inspected a part: cell 1 with parts, cell 2 without parts and limit and with a histogram from its inspection
+/// alone. Cell 3 did not inspect.
+function inspected(): ReportData {
+    const data = makeData({ batch: "inspected", scans: 1, variants: ["default", "fine", "coarse"], runs: 1, isAccepted: false, hasPictures: true });
+    const [first, second] = data.cells;
+    first!.inspection = makeInspection({ mean: 0.04, deviation: 0.04, parts: 40, labels: 20, seed: 1 });
+    second!.inspection = makeInspection({ mean: 0.01, deviation: 0.02, parts: 0, labels: 3, seed: 2, hasLimit: false });
+    second!.histogram = null;
+    for (const cell of [first!, second!]) cell.values.unshift(...inspectedValues(cell.inspection!));
+    return data;
+}
+
+const [reportTemplate, sheetTemplate, folder] = process.argv.slice(2);
+if (reportTemplate && sheetTemplate && folder) {
+    mkdirSync(folder, { recursive: true });
+    write(reportTemplate, folder, "empty", sets);
+    write(sheetTemplate, folder, "sheet-empty", sheetSets);
+}
+
+/// Fills the template with every set; `empty` is the name of the page without data.
+function write(template: string, folder: string, empty: string, from: Record<string, () => unknown>): void {
     const page = readFileSync(template, "utf8");
     if (page.split(place).length !== 2) throw new Error(`${template} has no place for the data`);
-    mkdirSync(folder, { recursive: true });
-    for (const [name, make] of Object.entries(sets)) {
+    for (const [name, make] of Object.entries(from)) {
         const json = JSON.stringify(make()).replaceAll("<", "\\u003c");
         writeFileSync(`${folder}/${name}.html`, page.replace(place, () => place.replace("null", () => json)));
     }
-    writeFileSync(`${folder}/empty.html`, page);
+    writeFileSync(`${folder}/${empty}.html`, page);
 }

@@ -9,7 +9,7 @@ let browser;
 before(async () => void (browser = await launch()));
 after(() => browser.close());
 
-const sources = ["nightly", "small", "first", "one", "none", "many", "empty"];
+const sources = ["nightly", "small", "first", "one", "none", "inspected", "many", "empty"];
 const readData = (name) => JSON.parse(/<script type="application\/json" id="data">(.*?)<\/script>/s.exec(readFileSync(new URL(`${name}.html`, pages), "utf8"))[1]);
 
 /// Opens a page, runs the body, and asserts that nothing was reported or requested meanwhile.

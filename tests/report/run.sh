@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds the report page and tests it in headless Chromium. Skipped, with a sentence, without Node or Chromium.
+# Builds the report page and the inspection sheet, and tests them in headless Chromium. Skipped, with a sentence, without Node or Chromium.
 set -euo pipefail
 cd "$(dirname "$0")"
 report=../../report
@@ -27,5 +27,5 @@ npm --prefix $report run --silent check
 $report/node_modules/.bin/tsc -p .
 npm --prefix $report run --silent build
 $report/node_modules/.bin/esbuild make_data.ts --bundle --platform=node --format=esm --outfile=build/make_data.mjs --log-level=warning
-node build/make_data.mjs $report/dist/page.html build/pages
-node --test --test-reporter=spec page_test.mjs
+node build/make_data.mjs $report/dist/page.html $report/dist/sheet.html build/pages
+node --test --test-reporter=spec page_test.mjs sheet_test.mjs

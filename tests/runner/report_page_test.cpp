@@ -180,7 +180,7 @@ TEST_F(ReportPage, ABatchWritesItsPage) {
 TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     folder_.write("page.html", "mine");
     EXPECT_THAT(scanmill({"report", "out", "--html", "new.html"}).err, HasSubstr("there are no records in 'out'"));
-    EXPECT_THAT(scanmill({"report", "out", "--html", "page.html"}).err, HasSubstr("exists and is not a report page"));
+    EXPECT_THAT(scanmill({"report", "out", "--html", "page.html"}).err, HasSubstr("exists and is not a page of this program"));
     EXPECT_EQ(content_of(folder_ / "page.html"), "mine");
     add_scan("a");
     write_batch();
@@ -188,7 +188,7 @@ TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     EXPECT_EQ(scanmill({"report", "out", "--html", "page.html", "--json"}).exit_code, 2);
     for (const char* file : {"out/scanmill.sqlite", "out/a.ply"}) {
         const std::string before = content_of(folder_ / file);
-        EXPECT_THAT(scanmill({"report", "out", "--html", file}).err, HasSubstr("exists and is not a report page"));
+        EXPECT_THAT(scanmill({"report", "out", "--html", file}).err, HasSubstr("exists and is not a page of this program"));
         EXPECT_EQ(content_of(folder_ / file), before);
     }
     folder_.write("file", "x");

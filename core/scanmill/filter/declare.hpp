@@ -305,6 +305,11 @@ public:
         declaration_.spec.measures = std::move(spec);
         return *this;
     }
+    /// Declares that the filter compares a part with its nominal and gives a verdict.
+    Declare& inspects(InspectSpec spec) {
+        declaration_.spec.inspects = std::move(spec);
+        return *this;
+    }
     /// Declares that the filter draws the value at this input; its first output is the picture. A step without `in`
     /// draws the last geometric value before it.
     Declare& draws(std::string value) { return draws(DrawSpec{std::move(value)}); }

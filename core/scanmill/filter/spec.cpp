@@ -126,6 +126,35 @@ void require_parameter(const FilterSpec& spec, const std::string& name, Paramete
                              : fmt::format("a value of type {}", name_of(type)));
 }
 
+void require_sound_inspection(const FilterSpec& spec) {
+    const InspectSpec& inspects = *spec.inspects;
+    const auto require = [&](bool is_sound, const std::string& name, const char* what) {
+        if (!is_sound) throw Error("filter {}: it inspects with '{}', which must be {}", spec.name, name, what);
+    };
+    for (const std::string& name : {inspects.part, inspects.nominal}) {
+        const PortSpec* port = spec.input(name);
+        require(port && !port->optional && !port->list, name, "a required input of one value");
+    }
+    for (const std::string& name : inspects.outputs) require(spec.output(name), name, "an output");
+    require(std::ranges::find(spec.adds, inspects.column) != spec.adds.end(), inspects.column,
+            "a column that the filter adds");
+    const auto require_metrics = [&](const std::vector<std::string>& names, bool numbered) {
+        for (const std::string& name : names) {
+            const MetricSpec* metric = spec.metric(name);
+            require(metric && metric->numbered == numbered, name, numbered ? "a numbered metric" : "a metric");
+        }
+    };
+    require_metrics(inspects.tolerance, false);
+    require_metrics(inspects.range, false);
+    require_metrics({inspects.histogram}, true);
+    require_metrics(inspects.label, true);
+    require_metrics(inspects.numbers, true);
+    if (inspects.tolerance.size() != 2 || inspects.range.size() != 2 || inspects.label.size() != 4)
+        throw Error("filter {}: it inspects with {} limits, {} ends of the range and {} metrics of a label; expected "
+                    "2, 2 and 4",
+                    spec.name, inspects.tolerance.size(), inspects.range.size(), inspects.label.size());
+}
+
 void require_sound_drawing(const FilterSpec& spec) {
     const PortSpec* input = spec.input(spec.draws->value);
     if (!input || input->optional || input->list)
@@ -140,6 +169,7 @@ void require_sound_drawing(const FilterSpec& spec) {
     require_parameter(spec, spec.draws->size, ParameterType::integer, 2);
     require_parameter(spec, spec.draws->colour, ParameterType::text);
     require_parameter(spec, spec.draws->scale, ParameterType::length, 2);
+    require_parameter(spec, spec.draws->tolerance, ParameterType::length, 2);
 }
 
 void require_sound_simplifying(const FilterSpec& spec) {
@@ -200,6 +230,7 @@ void require_sound(const FilterSpec& spec) {
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec, parameter);
     if (spec.streams) require_sound_stream(spec);
     if (spec.measures) require_sound_measure(spec);
+    if (spec.inspects) require_sound_inspection(spec);
     if (spec.draws) require_sound_drawing(spec);
     if (spec.simplifies) require_sound_simplifying(spec);
     for (const std::string& doubt : spec.doubts)

@@ -94,6 +94,33 @@ constexpr auto fields(const MeasureSpec*) {
         field("column", &T::column, "The vertex column of this output with the signed distance.").optional()};
 }
 
+/// For filters that compare a part with its nominal and give a verdict. Metrics of the whole nominal and of its parts are
+/// numbered: NAME is of the whole, NAME@2 … of the parts.
+struct InspectSpec {
+    std::string part, nominal;  ///< names of inputs
+    std::vector<std::string> outputs;  ///< outputs with the deviation in `column`, the best to look at first
+    std::string column;
+    std::vector<std::string> tolerance;  ///< metrics: lowest and highest deviation in tolerance
+    std::vector<std::string> range;  ///< metrics: both ends of the histogram and of the colours
+    std::string histogram;  ///< numbered metric: the shares in equal bins
+    std::vector<std::string> label;  ///< numbered metrics: the largest deviations, and x, y and z of their points
+    std::vector<std::string> numbers;  ///< numbered metrics to show for each part, in this order
+
+    bool operator==(const InspectSpec&) const = default;
+};
+constexpr auto fields(const InspectSpec*) {
+    using T = InspectSpec;
+    return std::tuple{field("part", &T::part),
+                      field("nominal", &T::nominal),
+                      field("outputs", &T::outputs, "Outputs with the deviation, the best to look at first."),
+                      field("column", &T::column, "The column of these outputs with the deviation."),
+                      field("tolerance", &T::tolerance, "Metrics: lowest and highest deviation in tolerance."),
+                      field("range", &T::range, "Metrics: both ends of the histogram and of the colours."),
+                      field("histogram", &T::histogram, "Numbered metric: the shares in equal bins."),
+                      field("label", &T::label, "Numbered metrics: the largest deviations, and x, y, z of their points."),
+                      field("numbers", &T::numbers, "Numbered metrics to show for each part.")};
+}
+
 /// For filters that draw a value: the name of this input. The first output is the picture. The other members are empty
 /// if the filter has no such input or parameter.
 struct DrawSpec {
@@ -102,6 +129,7 @@ struct DrawSpec {
     std::string size{};  ///< the parameter with the columns and rows of the picture
     std::string colour{};  ///< the parameter that names the column that colours the value
     std::string scale{};  ///< the parameter with the values at both ends of the colours
+    std::string tolerance{};  ///< the parameter with the two limits that the colours show
 
     bool operator==(const DrawSpec&) const = default;
 };
@@ -112,7 +140,8 @@ constexpr auto fields(const DrawSpec*) {
         field("camera", &T::camera, "The input that sets the camera instead of the value.").optional(),
         field("size", &T::size, "The parameter with the columns and rows of the picture.").optional(),
         field("colour", &T::colour, "The parameter that names the column that colours the value.").optional(),
-        field("scale", &T::scale, "The parameter with the values at both ends of the colours.").optional()};
+        field("scale", &T::scale, "The parameter with the values at both ends of the colours.").optional(),
+        field("tolerance", &T::tolerance, "The parameter with the two limits that the colours show.").optional()};
 }
 
 /// For filters that make a mesh of fewer triangles: the name of the input, the parameter with the number of triangles
@@ -142,6 +171,7 @@ struct FilterSpec {
     std::vector<MetricSpec> metrics;
     std::optional<StreamSpec> streams;
     std::optional<MeasureSpec> measures;
+    std::optional<InspectSpec> inspects;
     std::optional<DrawSpec> draws;
     std::optional<SimplifySpec> simplifies;
     /// Names of columns that the filter may add to its outputs. Formats that cannot hold these columns leave them out
@@ -173,6 +203,7 @@ constexpr auto fields(const FilterSpec*) {
         field("streams", &T::streams, "The filter can read its first input as a stream.").optional(),
         field("measures", &T::measures, "The filter compares the value at one input with the truth at another.")
             .optional(),
+        field("inspects", &T::inspects, "The filter compares a part with its nominal and gives a verdict.").optional(),
         field("draws", &T::draws, "The filter draws the value at this input.").optional(),
         field("simplifies", &T::simplifies, "The filter makes a mesh of fewer triangles from the mesh at this input.")
             .optional(),
@@ -191,6 +222,8 @@ constexpr auto fields(const FilterSpec*) {
 /// - The stream needs a parameter that does not exist or that always has a value.
 /// - The filter compares a value with a truth, but lacks one of these two inputs. Its deviation is not an output that
 ///   is a mesh, or lacks a column among those that the filter adds.
+/// - The filter inspects a part, but lacks one of these inputs, outputs and metrics, or a column among those that it
+///   adds. Tolerance and range are not two metrics, or the label is not four. A metric of a part is not numbered.
 /// - The filter draws a value, but lacks this input, or its first output is not a picture. The camera is not an
 ///   optional input, or a parameter has another type.
 /// - The filter simplifies a mesh, but lacks this input or one of the two parameters, or its first output is not a

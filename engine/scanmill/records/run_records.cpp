@@ -62,19 +62,21 @@ constexpr auto fields(const Decision*) {
     return std::tuple{field("at", &R::at), field("who", &R::who), field("why", &R::why)};
 }
 
-/// The verdict of a batch's gate on a run. Its table is not part of layout(), so that older files stay readable.
+/// The verdict of a batch's gate on a run.
 struct GateVerdict {
     std::size_t regressions = 0;
 };
 constexpr auto fields(const GateVerdict*) { return std::tuple{field("regressions", &GateVerdict::regressions)}; }
 constexpr const char* verdict_table = "gate_verdict";
-constexpr const char* acknowledgement_table = "acknowledgement";  // not part of layout(), either
+constexpr const char* acknowledgement_table = "acknowledgement";
 
 const std::string& layout() {
     static const std::string sql =
         tables::creation<RunRow>("run", "") + tables::creation<RunEnd>("run_end", "run") +
         tables::creation<StepRecord>("step", "run") + tables::creation<CellRecord>("cell", "run") +
         tables::creation<Decision>("acceptance", "run") + tables::creation<Decision>("revocation", "acceptance") +
+        tables::creation<GateVerdict>(verdict_table, "run") +
+        tables::creation<Acknowledgement>(acknowledgement_table, "") +
         R"(CREATE INDEX step_by_name ON step (step, scan, parent);
 CREATE INDEX step_by_node ON step (parent, node, origin);
 CREATE VIEW run_counts AS SELECT run.id AS run,
@@ -235,8 +237,6 @@ void RunRecords::add_costs(std::int64_t run, const std::vector<PastCosts>& cells
 void RunRecords::add_verdict(std::int64_t run, std::size_t regressions) {
     about(database_->file, [&] {
         SQLite::Transaction transaction(database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
-        if (!database_->sqlite.tableExists(verdict_table))
-            database_->sqlite.exec(tables::creation<GateVerdict>(verdict_table, "run"));
         tables::insert(database_->statements, verdict_table, GateVerdict{regressions}, run);
         transaction.commit();
     });
@@ -244,15 +244,10 @@ void RunRecords::add_verdict(std::int64_t run, std::size_t regressions) {
 
 std::vector<RunSummary> RunRecords::summaries(std::optional<std::int64_t> id) const {
     return about(database_->file, [&] {
-        const std::string regressions =
-            database_->sqlite.tableExists(verdict_table)
-                ? "(SELECT verdict.regressions FROM gate_verdict AS verdict WHERE verdict.parent = run.id "
-                  "ORDER BY verdict.id DESC LIMIT 1)"
-                : "NULL";
         const std::string sql =
-            "SELECT run.id, started, workflow, run_end.outcome, counts.cells, counts.doubtful, counts.failed, " +
-            regressions +
-            ", counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT JOIN run_end ON "
+            "SELECT run.id, started, workflow, run_end.outcome, counts.cells, counts.doubtful, counts.failed, "
+            "(SELECT verdict.regressions FROM gate_verdict AS verdict WHERE verdict.parent = run.id "
+            "ORDER BY verdict.id DESC LIMIT 1), counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT JOIN run_end ON "
             "run_end.parent = run.id JOIN run_counts AS counts ON counts.run = run.id";
         SQLite::Statement rows(database_->sqlite, sql + (id ? " WHERE run.id = ?" : " ORDER BY run.id"));
         if (id) rows.bind(1, *id);
@@ -395,8 +390,6 @@ void RunRecords::acknowledge(Acknowledgement acknowledgement) {
     about(database_->file, [&] {
         acknowledgement.at = now();
         SQLite::Transaction transaction(database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
-        if (!database_->sqlite.tableExists(acknowledgement_table))
-            database_->sqlite.exec(tables::creation<Acknowledgement>(acknowledgement_table, ""));
         tables::insert(database_->statements, acknowledgement_table, acknowledgement);
         transaction.commit();
     });
@@ -405,7 +398,6 @@ void RunRecords::acknowledge(Acknowledgement acknowledgement) {
 std::vector<Acknowledgement> RunRecords::acknowledgements(const std::string& batch) const {
     return about(database_->file, [&] {
         std::vector<Acknowledgement> all;
-        if (!database_->sqlite.tableExists(acknowledgement_table)) return all;
         SQLite::Statement ids(database_->sqlite,
                               fmt::format("SELECT id FROM {} WHERE batch = ? ORDER BY id", acknowledgement_table));
         ids.bind(1, batch);

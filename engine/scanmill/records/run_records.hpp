@@ -5,8 +5,7 @@
 /// Rows are never changed, and removed only with their whole run. A run without an end is still running or was killed.
 /// The file may be on a network file system, because it uses a rollback journal. Any SQLite program can read it. Its
 /// tables derive from the fields of the records (report/run_report.hpp, detail/table.hpp). A version of Scanmill with
-/// other fields refuses the file. The tables `gate_verdict` and `acknowledgement` are created when they get their first
-/// rows; files without them are accepted.
+/// other fields refuses the file.
 
 #include <filesystem>
 #include <functional>

@@ -63,12 +63,13 @@ constexpr auto fields(const ListedRun*) {
 struct PrunedDocument {
     std::vector<std::int64_t> runs;
     std::vector<std::string> files;
-    std::uint64_t bytes = 0, records_before = 0, records_after = 0;
+    std::uint64_t bytes = 0, preview_bytes = 0, records_before = 0, records_after = 0;
 };
 constexpr auto fields(const PrunedDocument*) {
     using R = PrunedDocument;
     return std::tuple{field("runs", &R::runs, "Numbers of the removed runs."), field("files", &R::files),
                       field("bytes", &R::bytes, "Size of the removed files."),
+                      field("preview-bytes", &R::preview_bytes, "Size of the removed previews."),
                       field("records-before", &R::records_before, "Size of the file with the records before."),
                       field("records-after", &R::records_after, "Size of the file with the records now.")};
 }

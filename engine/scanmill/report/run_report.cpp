@@ -10,6 +10,12 @@ static Texts texts_of(const ParameterSet& parameters) {
     return texts;
 }
 
+/// "in [99 %, 100 %]", "< 0.1 mm" or "2".
+static std::string limits_text(const PlannedExpectation& expectation) {
+    const std::string_view limits = std::string_view(expectation.text).substr(expectation.name.size());
+    return std::string(limits.substr(limits.find_first_not_of(": ")));
+}
+
 FailureRecord record_of(const Failure& failure) {
     return {failure.cause, failure.number, failure ? failure.whole().what() : ""};
 }
@@ -26,6 +32,9 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
         step.filter_version = planned->spec.version;
         step.build = std::move(build);
         step.authored = texts_of(planned->parameters);
+        for (const NodeInput& input : node.inputs) step.inputs.push_back({input.port, input.node, input.from});
+        for (const PlannedExpectation& expectation : planned->expectations)
+            step.expected.emplace_back(expectation.name, limits_text(expectation));
     } else {
         step.file = node.leaf.name();
         step.authored = declared_of(node.leaf);
@@ -43,7 +52,7 @@ StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeRep
     return step;
 }
 
-OutputRecord output_record(const OutputReport& report) {
+OutputRecord output_record(const RunOutput& output, const OutputReport& report) {
     return {report.file.string(),
             std::string(name_of(report.kind)),
             report.outcome,
@@ -53,7 +62,9 @@ OutputRecord output_record(const OutputReport& report) {
             report.moved_to.string(),
             report.not_moved,
             report.warnings,
-            report.evidence.string()};
+            report.evidence.string(),
+            output.node,
+            output.port};
 }
 
 CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report) {
@@ -66,7 +77,8 @@ CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellRep
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
-    for (const OutputReport& output : report.outputs) record.outputs.push_back(output_record(output));
+    for (std::size_t output = 0; output < report.outputs.size(); ++output)
+        record.outputs.push_back(output_record(cell.outputs[output], report.outputs[output]));
     return record;
 }
 

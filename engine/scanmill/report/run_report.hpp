@@ -30,6 +30,20 @@ constexpr auto fields(const FailureRecord*) {
         field("number", &FailureRecord::number, "Number of the signal, or the exit code.").optional()};
 }
 
+/// An input of a step. It is the output `output` of the step that has the number `step` in the run; for a step that
+/// reads a file, `output` is empty.
+struct InputRecord {
+    std::string port;
+    std::size_t step = 0;
+    std::string output;
+};
+constexpr auto fields(const InputRecord*) {
+    using R = InputRecord;
+    return std::tuple{field("port", &R::port, "Name of the filter's input."),
+                      field("step", &R::step, "Number of the step whose result it is."),
+                      field("output", &R::output, "Output of that step; absent for a step that reads a file.").optional()};
+}
+
 struct StepRecord {
     std::size_t node = 0;
     std::string workflow, label, filter;
@@ -42,6 +56,8 @@ struct StepRecord {
     Effort effort;
     unsigned attempts = 0;
     Texts authored, resolved;
+    std::vector<InputRecord> inputs;
+    Texts expected;
     Metrics metrics, properties;
     std::vector<std::string> warnings;
 };
@@ -65,6 +81,8 @@ constexpr auto fields(const StepRecord*) {
         field("attempts", &R::attempts, "Number of times that the step was started."),
         field("authored", &R::authored, "Parameters as written in the workflow.").optional(),
         field("parameters", &R::resolved, "Parameters as the filter got them, in the scan's unit.").optional(),
+        field("inputs", &R::inputs).optional(),
+        field("expected", &R::expected, "What the workflow expects of the result, by metric or property.").optional(),
         field("metrics", &R::metrics, "Numbers that the filter reported; null: not finite.").by_name().optional(),
         field("properties", &R::properties, "Properties of the first output, or of the file that was read.")
             .by_name()
@@ -81,6 +99,8 @@ struct OutputRecord {
     std::string moved_to{}, not_moved{};
     std::vector<std::string> warnings{};
     std::string evidence{};
+    std::size_t step = 0;
+    std::string port{};
 };
 constexpr auto fields(const OutputRecord*) {
     using R = OutputRecord;
@@ -97,7 +117,9 @@ constexpr auto fields(const OutputRecord*) {
         field("not-moved", &R::not_moved, "Why the file of an earlier run could not be moved.").optional(),
         field("evidence", &R::evidence,
               "Path of the whole output below `failed/`, because its cell does not meet an expectation.")
-            .optional()};
+            .optional(),
+        field("step", &R::step, "Number of the step whose result the file is."),
+        field("port", &R::port, "Output of that step; absent for a file that the workflow reads.").optional()};
 }
 
 /// The costs of one pass over a cell. All steps of the cell ran in this pass.
@@ -199,7 +221,7 @@ struct RunDetails {
 FailureRecord record_of(const Failure& failure);
 /// The record of a step. `build` identifies the filter's module.
 StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeReport& report, std::string build);
-OutputRecord output_record(const OutputReport& report);
+OutputRecord output_record(const RunOutput& output, const OutputReport& report);
 CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellReport& report);
 
 }  // namespace scanmill

@@ -28,6 +28,10 @@ constexpr auto fields(const PageRun*) {
                       field("seconds", &R::seconds)};
 }
 
+inline PageRun page_run(const RunFacts& run) {
+    return {run.id, run.started, run.version, run.machine, run.threads, run.jobs, run.seconds};
+}
+
 struct PageMetric {
     std::string name, unit;
     std::optional<std::string> better;  ///< "smaller" or "larger"
@@ -100,6 +104,58 @@ constexpr auto fields(const PageHistogram*) {
                       field("tolerance", &R::tolerance)};
 }
 
+struct PageColumn {
+    std::string name, help;
+};
+constexpr auto fields(const PageColumn*) {
+    return std::tuple{field("name", &PageColumn::name), field("help", &PageColumn::help)};
+}
+
+struct PagePart {
+    std::string part;
+    std::vector<std::string> texts;
+};
+constexpr auto fields(const PagePart*) {
+    return std::tuple{field("part", &PagePart::part), field("texts", &PagePart::texts)};
+}
+
+struct PageLabel {
+    std::string deviation;
+    double value = 0;
+    std::array<std::string, 3> position;
+};
+constexpr auto fields(const PageLabel*) {
+    using R = PageLabel;
+    return std::tuple{field("deviation", &R::deviation), field("value", &R::value), field("position", &R::position)};
+}
+
+struct PageFact {
+    std::string name, text, help;
+};
+constexpr auto fields(const PageFact*) {
+    using R = PageFact;
+    return std::tuple{field("name", &R::name), field("text", &R::text), field("help", &R::help)};
+}
+
+struct PageInspection {
+    std::string step, unit;
+    std::array<double, 2> tolerance{};
+    std::optional<PageHistogram> histogram;
+    std::vector<std::array<std::string, 2>> expected;
+    std::vector<PageColumn> columns;
+    std::vector<PagePart> rows;
+    std::vector<PageLabel> labels;
+    std::vector<PageFact> facts;
+};
+constexpr auto fields(const PageInspection*) {
+    using R = PageInspection;
+    return std::tuple{field("step", &R::step),           field("unit", &R::unit),
+                      field("tolerance", &R::tolerance), field("histogram", &R::histogram),
+                      field("expected", &R::expected),   field("columns", &R::columns),
+                      field("rows", &R::rows),           field("labels", &R::labels),
+                      field("facts", &R::facts)};
+}
+
 struct PageCell {
     std::size_t id = 0;
     std::string workflow, scan, variant;
@@ -116,6 +172,7 @@ struct PageCell {
     std::optional<std::string> mesh;
     std::string deviation_unit;
     std::optional<PageHistogram> histogram;
+    std::optional<PageInspection> inspection;
 };
 constexpr auto fields(const PageCell*) {
     using R = PageCell;
@@ -140,7 +197,8 @@ constexpr auto fields(const PageCell*) {
                       field("pictures", &R::pictures),
                       field("mesh", &R::mesh),
                       field("deviation-unit", &R::deviation_unit),
-                      field("histogram", &R::histogram)};
+                      field("histogram", &R::histogram),
+                      field("inspection", &R::inspection)};
 }
 
 struct PageChange {
@@ -228,6 +286,49 @@ constexpr auto fields(const PageDocument*) {
         field("metrics", &R::metrics),       field("rules", &R::rules),     field("cells", &R::cells),
         field("changes", &R::changes),       field("runs", &R::runs),       field("trends", &R::trends),
         field("images", &R::images),         field("meshes", &R::meshes),   field("notes", &R::notes)};
+}
+
+struct SheetPicture {
+    std::string image, caption;
+};
+constexpr auto fields(const SheetPicture*) {
+    return std::tuple{field("image", &SheetPicture::image), field("caption", &SheetPicture::caption)};
+}
+
+struct Sheet {
+    std::string workflow, scan, variant;
+    Verdict verdict = Verdict::passed;
+    std::string outcome;
+    std::vector<std::string> reasons, doubts;
+    std::optional<KnownDoubts> known;
+    std::vector<std::string> warnings;
+    std::string error;
+    std::vector<std::array<std::string, 2>> facts;
+    std::optional<PageInspection> inspection;
+    std::vector<SheetPicture> pictures;
+};
+constexpr auto fields(const Sheet*) {
+    using R = Sheet;
+    return std::tuple{field("workflow", &R::workflow), field("scan", &R::scan),
+                      field("variant", &R::variant),   field("verdict", &R::verdict),
+                      field("outcome", &R::outcome),   field("reasons", &R::reasons),
+                      field("doubts", &R::doubts),     field("known", &R::known),
+                      field("warnings", &R::warnings), field("error", &R::error),
+                      field("facts", &R::facts),       field("inspection", &R::inspection),
+                      field("pictures", &R::pictures)};
+}
+
+struct SheetDocument {
+    std::string batch, folder;
+    PageRun run;
+    std::vector<Sheet> sheets;
+    std::map<std::string, std::string> images;  ///< data addresses of PNG
+    std::vector<std::string> notes;
+};
+constexpr auto fields(const SheetDocument*) {
+    using R = SheetDocument;
+    return std::tuple{field("batch", &R::batch),   field("folder", &R::folder), field("run", &R::run),
+                      field("sheets", &R::sheets), field("images", &R::images), field("notes", &R::notes)};
 }
 
 }  // namespace scanmill

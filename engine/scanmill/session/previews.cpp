@@ -32,8 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Increases when previews of equal files change, other than by the filters.
-constexpr std::string_view preview_scheme = "1";
-constexpr std::string_view picture_size = "[320, 240]";
+constexpr std::string_view preview_scheme = "2";
+constexpr std::string_view picture_size = "[320, 240]", size_on_paper = "[1200, 900]";
 constexpr std::size_t most_triangles = 3000;
 /// Only the number of triangles should end the simplification.
 constexpr std::string_view largest_error = "5 %diag";
@@ -45,13 +45,28 @@ constexpr std::string_view picture_end = ".png", deviation_end = "-deviation.png
 
 /// The content of KEY.json. It is written after the other files.
 struct Note {
+    std::string sha256;  ///< hash of the file of which the preview is
+    std::string read;  ///< name of this file if a run read it; empty for an output
     std::vector<std::string> files;  ///< names in the folder of previews
     double scale = 0;
     std::string reason;
 };
 constexpr auto fields(const Note*) {
-    return std::tuple{field("files", &Note::files), field("scale", &Note::scale).optional(),
+    return std::tuple{field("sha256", &Note::sha256, "Hash of the file of which the preview is."),
+                      field("read", &Note::read, "Name of this file if a run read it.").optional(),
+                      field("files", &Note::files), field("scale", &Note::scale).optional(),
                       field("reason", &Note::reason, "Why a file is missing.").optional()};
+}
+
+/// Empty for a file that cannot be read.
+std::optional<Note> note_in(const fs::path& file) {
+    try {
+        Note note;
+        read_json(Json::parse(MappedFile(file).bytes()), note);
+        return note;
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
 }
 
 /// The filters that make previews; null if none is installed.
@@ -83,7 +98,8 @@ struct Item {
     std::string truth;      ///< identifies truth and units; empty: no deviation is measured
     bool is_made = false;   ///< the folder has the preview
     bool is_usable = true;  ///< the file has the content that was recorded
-    bool is_measured = false;  ///< the mesh of the preview has its deviation
+    bool is_measured = false;  ///< the mesh of the preview has its deviation from the truth
+    std::string name_if_read;  ///< name of the file if it is not an output
     bool is_stored = true;  ///< the note is written: the next call would come to the same result
     std::string lasting;    ///< reasons that hold until the key changes; they are part of the note
 
@@ -105,13 +121,6 @@ private:
         if (all.find(reason) == std::string::npos) all += (all.empty() ? "" : "; ") + reason;
     }
 };
-
-std::string sha256_of(const fs::path& file) {
-    const MappedFile mapped(file);
-    Sha256 hash;
-    hash.add(mapped.bytes());
-    return hash.text();
-}
 
 double absolute_quantile(std::vector<double> values, double share) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -151,7 +160,7 @@ public:
           settings_(settings),
           makers_(makers_in(library)) {
         for (const FilterSpec* spec : {makers_.draws, makers_.simplifies, makers_.measures})
-            builds_ += (spec ? spec->name + " " + library_.build_id(spec->name) : "none") + "\n";
+            versions_ += spec ? fmt::format("{} {}\n", spec->name, spec->version) : "none\n";
     }
 
     std::vector<Preview> previews(const std::vector<PreviewWish>& wishes) {
@@ -201,18 +210,25 @@ private:
         PreviewWish& own = item.wish;
         const FileView view = file_view(wish.file);
         KeyBuilder key;
-        key.field("scheme", preview_scheme).field("builds", builds_);
-        if (own.sha256.empty()) try {
-                own.sha256 = sha256_of(view.file);
-            } catch (const Error&) {
-                // check_file() gives the reason.
-            }
+        key.field("scheme", preview_scheme).field("versions", versions_);
+        if (own.sha256.empty()) {
+            item.name_if_read = view.file.filename().string();
+            own.sha256 = sha256_of(view.file);  // empty: check_file() gives the reason
+        }
         key.field("file", own.sha256)
             .field("extension", extension_of(view.file))
             .field("view", std::to_string(view.view))
             .field("unit", symbol(own.unit))
             .field("kind", own.kind ? name_of(*own.kind) : "");
-        const bool may_measure = own.kind == kind_of<TriangleMesh>() && makers_.measures && makers_.simplifies;
+        if (own.deviation) {
+            key.field("column", own.deviation->column);
+            for (const double end : {own.deviation->range[0], own.deviation->range[1], own.deviation->tolerance[0],
+                                     own.deviation->tolerance[1]})
+                key.field("end", number_text(end));
+        }
+        if (own.is_for_paper) key.field("for paper", size_on_paper);
+        const bool may_measure =
+            own.kind == kind_of<TriangleMesh>() && !own.deviation && makers_.measures && makers_.simplifies;
         if (!may_measure) own.truth_file.clear();
         if (!own.truth_file.empty()) {
             const std::string truth = content(own.truth_file, item);
@@ -226,7 +242,7 @@ private:
         if (!own.camera_file.empty()) {
             const std::string camera = content(own.camera_file, item);
             if (camera.empty()) own.camera_file.clear();
-            key.field("camera", camera).field("camera unit", symbol(unit_of_camera(item)));
+            key.field("camera", camera).field("camera unit", symbol(own.camera_unit));
         }
         item.preview.key = key.key();
         const auto [found, is_new] = index_of_key_.emplace(item.preview.key, items_.size());
@@ -237,20 +253,13 @@ private:
         items_.push_back(std::move(item));
     }
 
-    LengthUnit unit_of_camera(const Item& item) const {
-        return item.wish.camera_file == item.wish.truth_file ? item.wish.truth_unit : item.wish.unit;
-    }
-
     /// Takes the preview from the folder, if it is complete.
     void find(Item& item) const {
         std::error_code absent;
         if (!fs::is_regular_file(file(item, note_end), absent)) return;
-        Note note;
-        try {
-            read_json(Json::parse(MappedFile(file(item, note_end)).bytes()), note);
-        } catch (const std::exception&) {
-            return;  // the preview is made again
-        }
+        const std::optional<Note> found = note_in(file(item, note_end));
+        if (!found) return;  // the preview is made again
+        const Note& note = *found;
         const auto exists = [&](const std::string& name) { return fs::is_regular_file(folder_ / name, absent); };
         if (!std::ranges::all_of(note.files, exists)) return;
         item.is_made = true;
@@ -263,7 +272,8 @@ private:
         set(&Preview::picture, picture_end);
         set(&Preview::deviation, deviation_end);
         set(&Preview::mesh, mesh_end);
-        item.is_measured = !item.preview.deviation.empty();  // a picture that failed is not tried again
+        // A picture that failed is not tried again.
+        item.is_measured = !item.wish.deviation && !item.preview.deviation.empty();
     }
 
     /// Checks that the file has the content that was recorded.
@@ -271,7 +281,9 @@ private:
         const fs::path path = file_view(item.wish.file).file;
         try {
             if (const std::optional<Error> other = why_no_file(path)) throw *other;
-            if (sha256_of(path) == item.wish.sha256) return;
+            const std::string found = sha256_of(path);
+            if (found.empty()) throw Error("'{}' cannot be read", path.string());
+            if (found == item.wish.sha256) return;
             item.fail(fmt::format("'{}' has changed since it was recorded", path.string()));
         } catch (const Error& error) {
             item.fail(error.sentence());
@@ -430,6 +442,17 @@ private:
         workflow.outputs.push_back({item.preview.key + "/" + file, {}, {std::move(source), {}}});
     }
 
+    /// The parameters of a picture that shows the deviations of the file.
+    Texts colours_of(const FileDeviation& deviation) const {
+        const DrawSpec& draws = *makers_.draws->draws;
+        const auto lengths = [](const std::array<double, 2>& two) {
+            return fmt::format("[{} u, {} u]", number_text(two[0]), number_text(two[1]));
+        };
+        return {{draws.colour, deviation.column},
+                {draws.scale, lengths(deviation.range)},
+                {draws.tolerance, lengths(deviation.tolerance)}};
+    }
+
     /// Adds a step that draws the input `scene`, with the camera of the wish.
     void add_picture(Workflow& workflow, const Item& item, std::string id, const std::string& scene, Texts parameters,
                      ScanFile& scan) const {
@@ -438,9 +461,9 @@ private:
         if (!item.wish.camera_file.empty()) {
             add_input(workflow, mesh_or_points("camera"));
             inputs.emplace_back(draws.camera, "camera");
-            add_file(scan, "camera", item.wish.camera_file, unit_of_camera(item));
+            add_file(scan, "camera", item.wish.camera_file, item.wish.camera_unit);
         }
-        parameters.emplace_back(draws.size, picture_size);
+        parameters.emplace_back(draws.size, item.wish.is_for_paper ? size_on_paper : picture_size);
         add_step(workflow, makers_.draws->name, std::move(id), inputs, parameters);
     }
 
@@ -470,18 +493,24 @@ private:
         if (!item.wish.kind || item.wish.kind == kind_of<PointCloud>()) scan.invalid = InvalidRows::drop;
         const Kind kind = workflow.inputs.front().kind;
         if (makers_.draws && makers_.draws->input(makers_.draws->draws->value)->takes(kind)) {
-            add_picture(workflow, item, "picture", "file", {}, scan);
-            add_output(workflow, item, "picture.png", "picture");
+            if (!item.wish.is_for_paper) {
+                add_picture(workflow, item, "picture", "file", {}, scan);
+                add_output(workflow, item, "picture.png", "picture");
+            }
+            if (item.wish.deviation) {
+                add_picture(workflow, item, "deviation-picture", "file", colours_of(*item.wish.deviation), scan);
+                add_output(workflow, item, "deviation.png", "deviation-picture");
+            }
         } else {
             item.miss(fmt::format("no installed filter draws {}", name_of(kind)));
         }
-        if (is_mesh && makers_.simplifies) {
+        if (is_mesh && !item.wish.is_for_paper && makers_.simplifies) {
             const SimplifySpec& simplifies = *makers_.simplifies->simplifies;
             add_step(workflow, makers_.simplifies->name, "simplified", {{simplifies.value, "file"}},
                      {{simplifies.triangles, std::to_string(most_triangles)},
                       {simplifies.max_error, std::string(largest_error)}});
             add_output(workflow, item, "simplified.ply", "simplified");
-        } else if (is_mesh) {
+        } else if (is_mesh && !item.wish.is_for_paper) {
             item.miss("no installed filter simplifies meshes");
         }
         if (!item.truth.empty()) {
@@ -499,6 +528,7 @@ private:
 
     void take_files(Item& item, const fs::path& made) {
         publish(item, &Preview::picture, made / "picture.png", picture_end);
+        publish(item, &Preview::deviation, made / "deviation.png", deviation_end);
         std::error_code absent;
         const bool is_measured = fs::exists(made / "deviation.ply", absent);
         const fs::path file = made / (is_measured ? "deviation.ply" : "simplified.ply");
@@ -511,10 +541,12 @@ private:
         light.frame = mesh->frame;
         light.positions = mesh->positions;
         light.triangles = mesh->triangles;
-        if (const Column* column =
-                is_measured ? mesh->vertex_columns.find(makers_.measures->measures->column) : nullptr) {
+        const std::string wished = item.wish.deviation ? item.wish.deviation->column
+                                   : is_measured       ? makers_.measures->measures->column
+                                                       : "";
+        if (const Column* column = mesh->vertex_columns.find(wished)) {
             light.vertex_columns.add(*column);
-            item.is_measured = true;
+            item.is_measured = is_measured;
         }
         const fs::path target = this->file(item, mesh_end);
         write_file(target, Value(std::make_shared<const TriangleMesh>(without_unused_vertices(light))));
@@ -601,6 +633,8 @@ private:
             return;
         }
         Note note;
+        note.sha256 = item.wish.sha256;
+        note.read = item.name_if_read;
         for (const fs::path& part : {preview.picture, preview.deviation, preview.mesh})
             if (!part.empty()) note.files.push_back(part.filename().string());
         note.scale = preview.scale;
@@ -618,7 +652,7 @@ private:
     FilterLibrary& library_;
     const PreviewSettings& settings_;
     const Makers makers_;
-    std::string builds_;
+    std::string versions_;
     std::map<std::string, std::pair<std::string, std::string>> contents_;  // hash and error, by path
     std::vector<Item> items_;
     std::map<std::string, std::size_t> index_of_key_;
@@ -660,16 +694,23 @@ std::vector<Preview> make_previews(const fs::path& folder, const std::vector<Pre
     }
 }
 
-void prune_previews(const fs::path& folder, const std::set<std::string>& wanted) {
+std::vector<fs::path> unused_previews(const fs::path& folder, const std::set<std::string>& outputs,
+                                      const std::set<std::string>& read) {
     std::error_code ignored;
-    std::vector<fs::path> unwanted;
+    std::set<std::string> used;  // keys
+    std::vector<fs::path> unused;
+    for (const auto& entry : fs::directory_iterator(previews_folder(folder), ignored)) {
+        const std::string name = entry.path().filename().string(), key = key_of_name(name);
+        if (key.empty() || !name.ends_with(note_end)) continue;
+        const std::optional<Note> note = note_in(entry.path());
+        if (note && (outputs.contains(note->sha256) || read.contains(note->read))) used.insert(key);
+    }
     for (const auto& entry : fs::directory_iterator(previews_folder(folder), ignored))
-        if (const std::string key = key_of_name(entry.path().filename().string());
-            !key.empty() && !wanted.contains(key))
-            unwanted.push_back(entry.path());
-    std::ranges::sort(unwanted, {}, [](const fs::path& path) { return path.extension() != note_end; });  // notes first
-    for (const fs::path& path : unwanted) fs::remove(path, ignored);
-    if (fs::is_directory(previews_folder(folder), ignored)) remove_abandoned_parts(previews_folder(folder));
+        if (const std::string key = key_of_name(entry.path().filename().string()); !key.empty() && !used.contains(key))
+            unused.push_back(entry.path());
+    // Without its note, a preview is incomplete and made again.
+    std::ranges::sort(unused, {}, [](const fs::path& path) { return std::pair(path.extension() != note_end, path); });
+    return unused;
 }
 
 QuantisedMesh quantised(const fs::path& file) {

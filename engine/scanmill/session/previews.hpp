@@ -4,17 +4,18 @@
 /// folder `previews` of an output folder, so that runs without a cache reuse them.
 ///
 /// A preview consists of up to four files in that folder. KEY depends on the contents of the wished file, of its truth
-/// and of the file that sets the camera, on the declared units, and on the builds of the filters that make previews.
+/// and of the file that sets the camera, on the declared units, and on the versions of the filters that make previews.
 ///
 /// | file              | content                                                                                   |
 /// |-------------------|-------------------------------------------------------------------------------------------|
 /// | KEY.png           | picture of the file                                                                       |
-/// | KEY.ply           | the simplified mesh, if the file is a mesh; with a truth, also its deviation by vertex    |
-/// | KEY-deviation.png | picture of KEY.ply, coloured by the deviation                                             |
-/// | KEY.json          | names of the files that were made, the scale of the colours, why a file is missing        |
+/// | KEY.ply           | the simplified mesh, if the file is a mesh, with its deviation by vertex, if it has one   |
+/// | KEY-deviation.png | picture coloured by the deviation: of KEY.ply, or of the file if that has the deviation   |
+/// | KEY.json          | what the preview is of, names of its files, scale of the colours, why a file is missing   |
 ///
 /// The filters are found by what they declare: the first by name that draws, that simplifies, and that measures.
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -28,6 +29,12 @@
 
 namespace scanmill {
 
+/// The deviations that a file has itself, in its unit, as a filter that inspects a part writes them.
+struct FileDeviation {
+    std::string column;
+    std::array<double, 2> range{}, tolerance{};  ///< both ends of the colours, and the limits that they show
+};
+
 struct PreviewWish {
     std::filesystem::path file;  ///< may be the name of a view; see file_view()
     std::string sha256;          ///< hash of the file's bytes when it was recorded; empty: of its bytes now
@@ -35,11 +42,12 @@ struct PreviewWish {
     /// Sets the camera: the truth, or else the scan, so that pictures of all variants of a scan match. A mesh or
     /// points. Empty: the wished file.
     std::string camera_file;
-    LengthUnit unit = LengthUnit::unknown;  ///< unit of the file; unknown: from the file
-    /// Unit of the truth, and of the camera's file if that is the truth; unknown: from the file.
-    LengthUnit truth_unit = LengthUnit::unknown;
+    /// Units of the three files; unknown: from the file.
+    LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown, camera_unit = LengthUnit::unknown;
     /// Kind of the file. Empty: a mesh or points, of which only the picture is made, as for scans and truths.
     std::optional<Kind> kind = kind_of<TriangleMesh>();
+    std::optional<FileDeviation> deviation{};  ///< takes the place of the deviation from the truth
+    bool is_for_paper = false;  ///< only the picture of the deviation, with 1200 x 900 pixels
 };
 
 struct Preview {
@@ -63,7 +71,7 @@ std::filesystem::path previews_folder(const std::filesystem::path& folder);
 
 /// Returns the preview of every wish, in order, and makes those that the output folder `folder` lacks.
 ///
-/// - A picture has 320 x 240 pixels, a simplified mesh at most 3,000 triangles.
+/// - A picture has 320 x 240 pixels unless it is for paper, a simplified mesh at most 3,000 triangles.
 /// - The pictures of deviations from one truth have one scale. It is that of the first wish in order whose picture
 ///   exists; pictures with another scale are drawn again. If none exists, the scale is 1.5 times the median, over these
 ///   wishes, of the 95 % quantile of the distances by vertex, rounded up to two digits.
@@ -79,9 +87,11 @@ std::vector<Preview> make_previews(const std::filesystem::path& folder, const st
                                    FilterLibrary& library, const PreviewSettings& settings,
                                    const std::function<void(std::string)>& warn);
 
-/// Removes the previews in the output folder `folder` whose key is not in `wanted`. Other files in the folder of
-/// previews stay. Errors are ignored.
-void prune_previews(const std::filesystem::path& folder, const std::set<std::string>& wanted);
+/// The files of the previews in the output folder `folder` that are neither of an output with one of these hashes nor of
+/// a file that was read and has one of these names (without its folder), in the order in which to remove them.
+std::vector<std::filesystem::path> unused_previews(const std::filesystem::path& folder,
+                                                   const std::set<std::string>& outputs,
+                                                   const std::set<std::string>& read);
 
 /// A mesh in 16-bit numbers.
 struct QuantisedMesh {

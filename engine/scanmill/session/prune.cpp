@@ -12,6 +12,7 @@
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/plan/output_names.hpp"
 #include "scanmill/session/output_lock.hpp"
+#include "scanmill/session/previews.hpp"
 #include "scanmill/worker/file_description.hpp"
 
 namespace scanmill {
@@ -47,16 +48,6 @@ std::set<std::int64_t> runs_to_keep(const RunRecords& records, std::size_t keep)
     for (const Acceptance& acceptance : records.acceptances())
         if (!acceptance.revoked_at) kept.insert(acceptance.run);
     return kept;
-}
-
-/// The SHA-256 of the file's bytes; empty if it cannot be read.
-std::string sha256_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    Sha256 hash;
-    std::vector<char> buffer(1 << 20);
-    while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount() > 0)
-        hash.add({buffer.data(), static_cast<std::size_t>(stream.gcount())});
-    return stream.eof() ? hash.text() : "";
 }
 
 /// Whether one of the runs recorded these bytes, or bytes without a hash, for the file.
@@ -177,9 +168,16 @@ Pruned prune(const fs::path& folder, std::size_t keep, bool dry_run, const std::
             to_remove.emplace_back(file, std::move(all));
         }
     }
+    std::set<std::string> hashes;  // of the outputs of runs that stay
+    for (const RecordedFile& file : files)
+        if (kept.contains(file.run)) hashes.insert(file.sha256);
+    const std::vector<fs::path> previews = unused_previews(folder, hashes, read);
+    for (const fs::path& preview : previews) pruned.preview_bytes += fs::file_size(preview, ignored);
     warn_of_gone_files(records, kept, warn);
     pruned.records_before = pruned.records_after = fs::file_size(folder / records_file, ignored);
-    if (dry_run || pruned.runs.empty()) return pruned;
+    if (dry_run) return pruned;
+    for (const fs::path& preview : previews) fs::remove(preview, ignored);
+    if (pruned.runs.empty()) return pruned;
     for (const auto& [file, all] : to_remove) remove_files(all, file, whole);
     records.remove(pruned.runs, warn);
     pruned.records_after = fs::file_size(folder / records_file, ignored);

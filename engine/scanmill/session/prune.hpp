@@ -18,6 +18,7 @@ struct Pruned {
     std::vector<std::int64_t> runs;
     std::vector<std::filesystem::path> files;
     std::uint64_t bytes = 0;        ///< size of the files
+    std::uint64_t preview_bytes = 0;  ///< size of the previews of files that no run that stays wrote or read
     std::size_t changed = 0;        ///< files of removed runs that stay, because something else wrote them anew
     std::size_t read = 0;  ///< files of removed runs that stay, because runs that stay read files of their names
     std::size_t outside = 0;  ///< files of removed runs that stay, because they are outside the folder
@@ -35,8 +36,8 @@ std::map<std::int64_t, RunBytes> bytes_by_run(const RunRecords& records);
 /// Removes runs from the records of `folder`, and from `folder` the output files, their JSON and the failed results
 /// that no other run names. Of every workflow or batch, the newest `keep` runs that ended stay, those that were
 /// interrupted since, and every accepted run. A file stays if it is outside the folder, if its bytes are not those that
-/// a removed run wrote, or if a run that stays reads a file of its name. With `dry_run`, nothing
-/// is removed.
+/// a removed run wrote, or if a run that stays reads a file of its name. Previews of files that no run that stays wrote
+/// or read are removed, too. With `dry_run`, nothing is removed.
 ///
 /// Throws FolderInUse while a run writes into the folder, and Error for a folder without records or if a file cannot be
 /// removed. Files are removed before the records, so that a repeated call goes on after an interruption. Warns if a run

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/compare/tables.hpp"
 #include "scanmill/kinds/base64.hpp"
-#include "scanmill/workflow/ready.hpp"
+#include "scanmill/session/cell_files.hpp"
+#include "scanmill/session/inspections.hpp"
+#include "scanmill/session/page_template.hpp"
 
 namespace scanmill {
 
@@ -22,23 +22,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view data_mark = "<script type=\"application/json\" id=\"data\">null</script>";
 constexpr std::size_t few_cells = 80, few_bytes = 15'000'000, many_bytes = 40'000'000;
 constexpr std::size_t most_rules = 60, most_changes = 500, most_log_lines = 50, histogram_bins = 40;
-
-std::string content_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 template <class T>
 std::string base64_of_numbers(const std::vector<T>& numbers) {
     static_assert(std::endian::native == std::endian::little);
     return base64_of(std::as_bytes(std::span(numbers)));
-}
-
-PageRun page_run(const RunFacts& run) {
-    return {run.id, run.started, run.version, run.machine, run.threads, run.jobs, run.seconds};
 }
 
 std::string unit_of(const CellValue& value) {
@@ -59,7 +49,8 @@ public:
         : folder_(folder),
           run_(std::move(run)),
           comparison_(std::move(comparison)),
-          library_(library) {
+          library_(library),
+          steps_(steps_by_node(run_)) {
         page_.batch = comparison_.batch;
         page_.verdict = comparison_.verdict;
         page_.folder = folder.string();
@@ -77,17 +68,12 @@ public:
     }
 
     void add_cells() {
-        const StepsByNode steps = steps_by_node(run_);
-        std::map<CellNames, const CellRecord*> records;
-        for (const CellRecord& cell : run_.cells) {
-            records[{cell.workflow, cell.scan, cell.variant}] = &cell;
-            by_name_[{cell.workflow, fs::path(cell.scan).filename().string(), cell.variant}].push_back(&cell);
-        }
+        const CellRecords records(run_);
         for (const CellComparison& compared : comparison_.cells) {
             PageCell cell = page_cell(compared, page_.cells.size());
-            if (const CellRecord* record = record_of(compared, records)) {
+            if (const CellRecord* record = records.of(compared)) {
                 record_of_cell_[cell.id] = record;
-                add_record(cell, *record, steps);
+                add_record(cell, *record);
             }
             page_.cells.push_back(std::move(cell));
         }
@@ -199,17 +185,6 @@ public:
     }
 
 private:
-    /// The record of the compared cell, whose scan may be written as a path from another folder.
-    const CellRecord* record_of(const CellComparison& cell,
-                                const std::map<CellNames, const CellRecord*>& records) const {
-        if (const auto found = records.find(key_of(cell)); found != records.end()) return found->second;
-        const auto found = by_name_.find({cell.workflow, fs::path(cell.scan).filename().string(), cell.variant});
-        if (found == by_name_.end()) return nullptr;
-        for (const CellRecord* record : found->second)
-            if (fs::path(record->scan).lexically_normal().string().ends_with("/" + cell.scan)) return record;
-        return nullptr;
-    }
-
     PageCell page_cell(const CellComparison& compared, std::size_t id) const {
         PageCell cell;
         cell.id = id;
@@ -241,11 +216,13 @@ private:
         return cell;
     }
 
-    void add_record(PageCell& cell, const CellRecord& record, const StepsByNode& steps) const {
+    void add_record(PageCell& cell, const CellRecord& record) const {
         cell.error = record.failure.error;
+        cell.inspection = page_inspection(CellFiles(record, steps_, library_).inspection());
+        if (cell.inspection) cell.histogram = cell.inspection->histogram;
         for (const std::size_t node : record.nodes) {
-            const auto found = steps.find(node);
-            if (found == steps.end()) continue;
+            const auto found = steps_.find(node);
+            if (found == steps_.end()) continue;
             const StepRecord& step = *found->second;
             PageStep shown{step.label,
                            step.filter,
@@ -267,8 +244,7 @@ private:
                 cell.log += step.effort.log[line] + "\n";
         }
         for (const OutputRecord& output : record.outputs) {
-            cell.outputs.push_back(
-                {output.evidence.empty() ? output.file : output.evidence, output.bytes, output.sha256});
+            cell.outputs.push_back({path_of(output), output.bytes, output.sha256});
             for (const std::string& warning : output.warnings) cell.warnings.push_back(warning);
         }
     }
@@ -296,40 +272,6 @@ private:
         return std::nullopt;
     }
 
-    /// A file that a step of the cell reads, and whether one of its steps measures.
-    struct Files {
-        std::string scan, truth;
-        LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown;
-    };
-    /// The unit that was declared for the file; unknown: that of the file itself.
-    static LengthUnit declared_unit(const StepRecord& read) {
-        const auto unit = std::ranges::find(read.authored, "unit", &std::pair<std::string, std::string>::first);
-        return unit == read.authored.end() ? LengthUnit::unknown
-                                           : length_unit(unit->second).value_or(LengthUnit::unknown);
-    }
-    Files files_of(const CellRecord& record, const StepsByNode& steps) const {
-        Files files;
-        std::vector<std::string> read;
-        LengthUnit unit = LengthUnit::unknown;  // declared for the last file that was read
-        for (const std::size_t node : record.nodes) {
-            const auto found = steps.find(node);
-            if (found == steps.end()) continue;
-            const StepRecord& step = *found->second;
-            if (step.filter.empty()) {
-                read.push_back(step.file);
-                unit = declared_unit(step);
-                if (read.size() == 1) files.unit = unit;
-                continue;
-            }
-            const FilterSpec* spec = library_.find(step.filter);
-            if (!spec || !spec->measures || read.size() < 2 || !files.truth.empty()) continue;
-            files.truth = read.back();
-            files.truth_unit = unit;
-        }
-        if (!read.empty()) files.scan = read.front();
-        return files;
-    }
-
     enum class Role { truth, scan, result, accepted };
 
     std::size_t wish(PreviewWish wish, bool is_of_tonight) {
@@ -344,46 +286,60 @@ private:
         return found->second;
     }
 
-    static const OutputRecord* mesh_of(const CellRecord& record) {
-        for (const OutputRecord& output : record.outputs)
-            if (output.kind == kind_name<TriangleMesh>() && (output.outcome == Outcome::ok || !output.evidence.empty()))
-                return &output;
-        return nullptr;
+    /// The wish for the output with the deviations of an inspected part, or else for the result.
+    std::optional<PreviewWish> wish_for(const CellRecord& record, const StepsByNode& steps) const {
+        const CellFiles files(record, steps, library_);
+        const CellFile truth = files.truth();
+        const InspectionStep inspection = files.inspection();
+        const OutputRecord* map =
+            inspection && !inspection.step->metrics.values.empty() ? files.deviation_map(inspection) : nullptr;
+        const OutputRecord* output = map ? map : files.mesh();
+        if (!output) return std::nullopt;
+        PreviewWish wish;
+        wish.file = path_of(*output);
+        wish.sha256 = output->sha256;
+        wish.truth_file = truth.path;
+        const CellFile camera = truth.path.empty() ? files.scan() : truth;
+        wish.camera_file = camera.path;
+        wish.unit = output->properties.unit;
+        wish.truth_unit = truth.unit;
+        wish.camera_unit = camera.unit;
+        wish.kind = kind_named(output->kind);
+        if (map) wish.deviation = inspection.deviation();
+        return wish;
     }
-    template <class T>
-    static std::string kind_name() {
-        return std::string(name_of(kind_of<T>()));
+
+    /// The wish for a file that the cell reads.
+    static PreviewWish wish_for(const CellFile& file, const CellFile& camera) {
+        PreviewWish wish;
+        wish.file = file.path;
+        wish.camera_file = camera.path;
+        wish.unit = file.unit;
+        wish.camera_unit = camera.unit;
+        wish.kind.reset();
+        return wish;
     }
 
     void find_wishes(const RunDetails* accepted) {
-        const StepsByNode steps = steps_by_node(run_);
         std::map<CellNames, const CellRecord*> before;
-        if (accepted)
+        StepsByNode steps_before;
+        if (accepted) {
+            steps_before = steps_by_node(*accepted);
             for (const CellRecord& cell : accepted->cells) before[{cell.workflow, cell.scan, cell.variant}] = &cell;
+        }
         for (const auto& [id, record] : record_of_cell_) {
-            const Files files = files_of(*record, steps);
-            const std::string camera = files.truth.empty() ? files.scan : files.truth;
-            const auto result_of = [&](const OutputRecord& output) {
-                return PreviewWish{output.evidence.empty() ? output.file : output.evidence,
-                                   output.sha256,
-                                   files.truth,
-                                   camera,
-                                   output.properties.unit,
-                                   files.truth_unit,
-                                   kind_of<TriangleMesh>()};
-            };
-            if (const OutputRecord* output = mesh_of(*record))
-                uses_[wish(result_of(*output), true)].emplace_back(id, Role::result);
+            const CellFiles files(*record, steps_, library_);
+            const CellFile scan = files.scan(), truth = files.truth();
+            if (std::optional<PreviewWish> result = wish_for(*record, steps_))
+                uses_[wish(*std::move(result), true)].emplace_back(id, Role::result);
             if (const auto found = before.find({record->workflow, record->scan, record->variant});
                 found != before.end())
-                if (const OutputRecord* output = mesh_of(*found->second))
-                    uses_[wish(result_of(*output), false)].emplace_back(id, Role::accepted);
-            if (!files.scan.empty())
-                uses_[wish({files.scan, "", "", camera, files.unit, files.truth_unit, std::nullopt}, true)]
-                    .emplace_back(id, Role::scan);
-            if (!files.truth.empty())
-                uses_[wish({files.truth, "", "", files.truth, files.truth_unit, files.truth_unit, std::nullopt}, true)]
-                    .emplace_back(id, Role::truth);
+                if (std::optional<PreviewWish> result = wish_for(*found->second, steps_before))
+                    uses_[wish(*std::move(result), false)].emplace_back(id, Role::accepted);
+            if (!scan.path.empty())
+                uses_[wish(wish_for(scan, truth.path.empty() ? scan : truth), true)].emplace_back(id, Role::scan);
+            if (!truth.path.empty())
+                uses_[wish(wish_for(truth, truth), true)].emplace_back(id, Role::truth);
         }
     }
 
@@ -392,9 +348,9 @@ private:
         if (file.empty()) return {};
         const std::string key = file.stem().string();
         if (!page_.images.contains(key)) {
-            const std::string content = content_of(file);
-            if (content.empty()) return {};
-            page_.images.emplace(key, "data:image/png;base64," + base64_of(std::as_bytes(std::span(content))));
+            std::string address = image_address(file);
+            if (address.empty()) return {};
+            page_.images.emplace(key, std::move(address));
         }
         return key;
     }
@@ -424,7 +380,8 @@ private:
         const bool has_deviation = !mesh.deviation.empty();
         cell.mesh = preview.key;
         cell.deviation_unit = symbol(mesh.unit);
-        if (has_deviation) cell.histogram = histogram(mesh, preview.scale > 0 ? preview.scale : mesh.range);
+        if (has_deviation && !cell.histogram)
+            cell.histogram = histogram(mesh, preview.scale > 0 ? preview.scale : mesh.range);
         if (page_.meshes.contains(preview.key)) return;
         PageMesh& shown = page_.meshes[preview.key];
         for (int axis = 0; axis < 3; ++axis) {
@@ -464,9 +421,9 @@ private:
     RunDetails run_;
     Comparison comparison_;
     const FilterLibrary& library_;
+    const StepsByNode steps_;
     PageDocument page_;
     std::map<std::size_t, const CellRecord*> record_of_cell_;
-    std::map<CellNames, std::vector<const CellRecord*>> by_name_;  // with the scan's file name
     std::vector<PreviewWish> wishes_;
     std::vector<bool> wish_is_of_tonight_;
     std::vector<std::vector<std::pair<std::size_t, Role>>> uses_;  // cells and roles by wish
@@ -474,14 +431,6 @@ private:
 };
 
 }  // namespace
-
-std::string page_template() {
-    std::error_code ignored;
-    for (const fs::path& file : shared_places("report/page.html"))
-        if (fs::exists(file, ignored)) return content_of(file);
-    throw Error("this program was built without the report page")
-        .hint("build it where Node and npm are installed; reports as text, markdown, JUnit and JSON need no page");
-}
 
 PageDocument page_document(const RecordedRun& which, const std::optional<RecordedRun>& against,
                            const CommandFor& command, FilterLibrary& library, const PreviewSettings& settings,
@@ -498,25 +447,6 @@ PageDocument page_document(const RecordedRun& which, const std::optional<Recorde
     maker.add_trends(records);
     maker.add_previews(library, settings, accepted ? &*accepted : nullptr, warn);
     return maker.finished();
-}
-
-bool is_report_page(std::string_view text) {
-    return text.find(data_mark.substr(0, data_mark.find("null"))) != std::string_view::npos;
-}
-
-std::string page_with(std::string page, const PageDocument& document) {
-    const std::size_t at = page.find(data_mark);
-    if (at == std::string::npos)
-        throw Error("the report page of this program has no place for data").hint("build the program again");
-    Json json{{"scanmill", 1}};
-    json.update(json_of(document));
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    // An HTML parser ends the element at "</", and "<!--" changes how it reads the rest.
-    std::string escaped;
-    escaped.reserve(text.size());
-    for (const char c : text) c == '<' ? escaped += "\\u003c" : escaped += c;
-    const std::size_t place = at + data_mark.find("null");
-    return page.replace(place, 4, escaped);
 }
 
 }  // namespace scanmill

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/page_documents.hpp"
@@ -14,24 +13,17 @@
 
 namespace scanmill {
 
-/// Throws Error if the program was built without the page.
-std::string page_template();
+inline constexpr const char* report_page = "page.html";  ///< name of the template
 
 /// The data of the page: the comparison of `which` with `against`, as compare_recorded() makes it; steps, parameters
 /// and logs from the records; the values of the last `most_nights` runs of the batch; and previews, which are made
 /// where they are missing (make_previews()).
 ///
 /// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
-/// largest first, and then pictures, and a note says so. The truth of a cell is the last file that its steps read
-/// besides the scan before a step that measures.
+/// largest first, and then pictures, and a note says so.
 constexpr std::size_t most_nights = 30;
 PageDocument page_document(const RecordedRun& which, const std::optional<RecordedRun>& against,
                            const CommandFor& command, FilterLibrary& library, const PreviewSettings& settings,
                            const std::function<void(std::string)>& warn);
-
-/// Whether the text is a report page.
-bool is_report_page(std::string_view text);
-/// The page with these data. Pre: `page` is page_template().
-std::string page_with(std::string page, const PageDocument& document);
 
 }  // namespace scanmill

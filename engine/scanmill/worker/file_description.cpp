@@ -35,6 +35,15 @@ std::string Sha256::text() {
     return text;
 }
 
+std::string sha256_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    Sha256 hash;
+    std::vector<char> buffer(1 << 20);
+    while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount() > 0)
+        hash.add({buffer.data(), static_cast<std::size_t>(stream.gcount())});
+    return stream.eof() ? hash.text() : "";
+}
+
 namespace {
 
 namespace fs = std::filesystem;

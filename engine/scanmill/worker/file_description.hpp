@@ -28,6 +28,9 @@ private:
     std::unique_ptr<sha256_ctx> context_;
 };
 
+/// The SHA-256 hash of the file's bytes; empty if it cannot be read.
+std::string sha256_of(const std::filesystem::path& file);
+
 // The description of an output is the small JSON file `<output>.json` beside it. It contains the properties of the file
 // and how it was made. Equal outputs have equal descriptions, whenever and wherever they were made.
 

@@ -279,5 +279,48 @@ TEST(Declare, SimplifyingFilterWithoutItsInputParametersOrMesh_IsUnsound) {
     EXPECT_THAT(sentence_of([&] { require_sound(spec); }), testing::HasSubstr("first output must be a mesh"));
 }
 
+FilterSpec spec_of_inspection() {
+    using P = SmallPictureParams;
+    return FilterDeclaration(Declare<P>("gauge", 1)
+                                 .summary("Compares a part with its nominal.")
+                                 .source("Hand-made")
+                                 .ties("There are none.")
+                                 .not_finite(help)
+                                 .in<PointCloud>("part", help)
+                                 .in<TriangleMesh>("nominal", help)
+                                 .out<TriangleMesh>("map", help)
+                                 .adds({"deviation"})
+                                 .metric("low", Unit::length, help)
+                                 .metric("high", Unit::length, help)
+                                 .metric("share", Unit::ratio, help, numbered)
+                                 .inspects({.part = "part",
+                                            .nominal = "nominal",
+                                            .outputs = {"map"},
+                                            .column = "deviation",
+                                            .tolerance = {"low", "high"},
+                                            .range = {"low", "high"},
+                                            .histogram = "share",
+                                            .label = {"share", "share", "share", "share"},
+                                            .numbers = {"share"}}))
+        .spec;
+}
+
+TEST(Declare, InspectionWithoutItsPortsColumnOrMetrics_IsUnsound) {
+    EXPECT_NO_THROW(require_sound(spec_of_inspection()));
+    const auto refusal = [](auto&& change) {
+        FilterSpec spec = spec_of_inspection();
+        change(*spec.inspects);
+        return sentence_of([&] { require_sound(spec); });
+    };
+    using testing::HasSubstr;
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.nominal = "model"; }),
+                HasSubstr("'model', which must be a required input"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.outputs = {"part"}; }), HasSubstr("'part', which must be an output"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.column = "class"; }), HasSubstr("a column that the filter adds"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.histogram = "low"; }), HasSubstr("'low', which must be a numbered"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.range = {"low", "share"}; }), HasSubstr("'share', which must be a"));
+    EXPECT_THAT(refusal([](InspectSpec& spec) { spec.tolerance = {"low"}; }), HasSubstr("with 1 limits"));
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -249,7 +249,7 @@ TEST_F(Previews, TruthInAnotherUnit_IsConverted) {
 TEST_F(Previews, DeclaredUnits_AreUsed) {
     PreviewWish wish = wish_of(write_ball("ball.ply", 10.1), write_ball("truth.ply", 1).string());
     wish.unit = LengthUnit::millimetre;
-    wish.truth_unit = LengthUnit::centimetre;
+    wish.truth_unit = wish.camera_unit = LengthUnit::centimetre;
     EXPECT_NEAR(make(wish).scale, 0.15, 0.016);
 }
 
@@ -323,16 +323,58 @@ TEST_F(Previews, FolderThatCannotBeMade_IsAWarning) {
     EXPECT_THAT(warnings_, SizeIs(1));
 }
 
-TEST_F(Previews, Prune_RemovesUnwantedKeysOnly) {
-    const std::vector<Preview> previews = make({wish_of(write_ball("a.ply", 1)), wish_of(write_ball("b.ply", 2))});
+TEST_F(Previews, UnusedPreviews_AreThoseOfOtherOutputsAndOtherReadFiles) {
+    PreviewWish scan = wish_of(write_ball("scan.ply", 3)), output = wish_of(write_ball("a.ply", 1)),
+                other = wish_of(write_ball("b.ply", 2));
+    output.sha256 = sha256_of_file(output.file);
+    other.sha256 = sha256_of_file(other.file);
+    const std::vector<Preview> previews = make({output, other, scan});
     folder_.write("out/previews/notes.txt", "mine");
-    folder_.write("out/other.png", "mine");
-    prune_previews(out_, {previews[0].key});
-    const auto left = files_below(out_);
-    EXPECT_THAT(left, SizeIs(5)) << "three files of one preview and two others";
-    EXPECT_TRUE(fs::exists(previews[0].picture));
-    EXPECT_FALSE(fs::exists(previews[1].picture));
-    prune_previews(folder_ / "none", {});
+    folder_.write("out/previews/" + std::string(32, 'f') + ".png", "the rest of an interrupted call");
+    const auto keys_of = [](const std::vector<fs::path>& files) {
+        std::map<std::string, int> count;
+        for (const fs::path& file : files) ++count[file.filename().string().substr(0, 32)];
+        return count;
+    };
+    const std::string rest(32, 'f');
+    EXPECT_EQ(keys_of(unused_previews(out_, {output.sha256, other.sha256}, {"scan.ply"})),
+              (std::map<std::string, int>{{rest, 1}}));
+    EXPECT_EQ(keys_of(unused_previews(out_, {output.sha256}, {"scan.ply", "b.ply"})),
+              (std::map<std::string, int>{{rest, 1}, {previews[1].key, 3}}));
+    EXPECT_EQ(unused_previews(out_, {output.sha256}, {}).front().extension(), ".json") << "notes go first";
+    EXPECT_THAT(unused_previews(folder_ / "none", {}, {}), IsEmpty());
+}
+
+/// A cube of which one half is 0.2 too low and the other 0.3 too high, by its own column.
+fs::path write_inspected_cube(const fs::path& file) {
+    TriangleMesh mesh = cube_of_squares(20);
+    const BoundingBox box = surface_box(mesh);
+    const double middle = (box.low.x() + box.high.x()) / 2;
+    Array<double> deviations;
+    for (const Vec3& position : mesh.positions) deviations.push_back(position.x() < middle ? -0.2 : 0.3);
+    mesh.vertex_columns.add(Column("deviation", 1, Buffer<double>(std::move(deviations))).with_length_exponent(1));
+    write_file(file, Value(std::make_shared<const TriangleMesh>(mesh)));
+    return file;
+}
+
+TEST_F(Previews, OwnDeviation_ColoursThePictureAndTheLightMesh) {
+    PreviewWish wish = wish_of(write_inspected_cube(folder_ / "cube.ply"), write_ball("nominal.ply").string());
+    wish.deviation = FileDeviation{"deviation", {-0.4, 0.4}, {-0.25, 0.25}};
+    const Preview preview = make(wish);
+    EXPECT_EQ(preview.reason, "");
+    EXPECT_FALSE(preview.picture.empty());
+    ASSERT_FALSE(preview.deviation.empty());
+    const QuantisedMesh mesh = quantised(preview.mesh);
+    EXPECT_NEAR(mesh.range, 0.3, 1e-6) << "not the distance from the nominal";
+    wish.is_for_paper = true;
+    const Preview large = make(wish);
+    EXPECT_TRUE(large.picture.empty());
+    EXPECT_TRUE(large.mesh.empty());
+    EXPECT_EQ(read_file(large.deviation).value.get<Picture>()->width, 1200u);
+    wish.deviation->tolerance = {-0.35, 0.35};
+    EXPECT_NE(content_of(make(wish).deviation), content_of(large.deviation)) << "0.3 is in tolerance now";
+    forbid_work();
+    EXPECT_EQ(make(wish).reason, "");
 }
 
 TEST_F(Previews, QuantisedMesh_HasTheBoxAndTheDeviations) {
