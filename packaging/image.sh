@@ -15,6 +15,7 @@ rm -f "$dist"/scanmill-*-image.tar.gz
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # Documentation and translations are left out, licences are not.
+# shellcheck disable=SC2016  # $1 is the hook's
 mmdebstrap --variant=minbase --mode=auto \
     --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-include=/usr/share/doc/*/copyright' \
     --dpkgopt='path-include=/usr/share/doc/scanmill/*' \

@@ -90,8 +90,8 @@ def manual_page(program: str) -> str:
         ".SH NAME", "scanmill \\- turn libraries of 3D scans into surfaces",
         ".SH SYNOPSIS", "\\fBscanmill\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR] [\\fIARGUMENTS\\fR]",
         ".SH DESCRIPTION", escaped(top.summary),
-        "A workflow, a YAML file, chains filters. The command checks it before it opens any scan, runs it over one scan or many, "
-        "and records what it did.",
+        "A workflow, a YAML file, chains filters. The command checks it before it opens any scan,",
+        "runs it over one scan or many, and records what it did.",
         ".SH EXAMPLE", ".nf", "scanmill run quickstart scan.ply \\-o meshes", ".fi",
         ".SH OPTIONS", ".TP", "\\fB\\-\\-help\\fR", "Print help, of the program or of a command.",
         ".TP", "\\fB\\-\\-version\\fR", "Print the version.",

@@ -20,7 +20,7 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
-from licences import package_of, write_licences  # noqa: E402
+from licences import package_of, write_licences
 
 METADATA = """\
 Metadata-Version: 2.1

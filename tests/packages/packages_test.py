@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The wheel, the .deb and the image in dist/, in systems without compilers and without Scanmill's sources."""
 import hashlib
-import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+from typing import ClassVar
 
 from guide import Guide
 from roots import SOURCE, Root, shell
 
 sys.path[:0] = [str(SOURCE / "packaging"), str(SOURCE / "packaging/wheel")]
-from build import pack, unpack  # noqa: E402
+from build import pack, unpack
 
 BUILD = SOURCE / "build/release"
 DATA = SOURCE / "build/data"
@@ -56,7 +55,7 @@ class Expected:
     """Scans, and what the source build makes of them."""
 
     scans: pathlib.Path
-    results: dict[str, dict[str, str]] = {}
+    results: ClassVar[dict[str, dict[str, str]]] = {}
 
     @classmethod
     def make(cls) -> None:
@@ -112,10 +111,9 @@ class Package(unittest.TestCase):
         self.assertGreater((self.root.path / "tmp/page.html").stat().st_size, 500_000)
 
     def check_formats(self, command: str) -> None:
-        """Every format module is loaded."""
-        for target in ("pcd", "vtp", "glb", "3mf"):
-            scan = "/scans/ball.ply" if target in ("pcd", "vtp") else "/out-mesh.stl"
-            self.root.must(f"cp /out/lion-default.ply /out-mesh.ply 2>/dev/null; [ -e /out-mesh.stl ] || {command} run quickstart /scans/ball.ply -o /mesh --no-cache -q && cp -n /mesh/ball.stl /out-mesh.stl; {command} convert {scan} /converted.{target}")
+        """The modules of formats write what the command reads. A run before has left a mesh in /out."""
+        for scan, target in (("/scans/ball.ply", "pcd"), ("/scans/ball.ply", "vtp"), ("/out/raw-scans.ply", "glb"), ("/out/raw-scans.ply", "3mf")):
+            self.root.must(f"{command} convert {scan} /converted.{target}")
             self.assertGreater((self.root.path / f"converted.{target}").stat().st_size, 1000, target)
 
 
@@ -163,7 +161,8 @@ class WheelTests:
         self.assertLess(listing[10] - python[10], 50)
 
     def test_no_library_is_missing(self) -> None:
-        lines = self.root.must("find /venv/lib/*/site-packages/scanmill* -type f \\( -name '*.so*' -o -path '*/bin/*' \\) -exec ldd {} + 2>/dev/null")
+        files = "/venv/lib/*/site-packages/scanmill* -type f \\( -name '*.so*' -o -path '*/bin/*' \\)"
+        lines = self.root.must(f"find {files} -exec ldd {{}} + 2>/dev/null")
         self.assertNotIn("not found", lines)
         own = {line.split(" => ")[1].split()[0] for line in lines.splitlines() if " => /" in line and "/venv/" not in line}
         print_figure(f"{self.suite}: libraries of the system: {', '.join(sorted(pathlib.Path(path).name for path in own))}")
@@ -175,11 +174,8 @@ class WheelTests:
         self.root.must("rm -rf '/a b'")
 
     def test_signals_end_the_program(self) -> None:
-        done = self.root.run(f"cd /tmp; {self.command} batch nightly -o killed --no-cache -q & sleep 2; kill -INT $!; wait $!; echo $?")
-        # A job in the background of a script ignores SIGINT; SIGTERM is not ignored.
-        if done.stdout.strip().splitlines()[-1] != "130":
-            done = self.root.run(f"cd /tmp; {self.command} batch nightly -o killed --no-cache -q & sleep 2; kill -TERM $!; wait $!; echo $?")
-        self.assertIn(done.stdout.strip().splitlines()[-1], ("130", "143"))
+        done = self.root.run(f"cd /tmp; timeout --preserve-status --signal=INT 2 {self.command} batch nightly -o killed --no-cache -q")
+        self.assertEqual(done.returncode, 130, done.stderr)
 
     def test_without_write_permission_or_home(self) -> None:
         """Another user, whose folder this is not, without HOME."""
@@ -203,7 +199,8 @@ class WheelTests:
                        "sed -i 's/\"name\": *\"crop\"/\"name\":\"trim\"/' /plugins/scanmill-trim.json")
         done = self.root.run(f"export SCANMILL_PLUGIN_PATH=/plugins; {self.command} list; {self.command} check nightly")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout + done.stderr, f"was built for another program: it needs 'scanmill {OTHER}.*this is 'scanmill {version()}")
+        refusal = f"was built for another program: it needs 'scanmill {OTHER}.*this is 'scanmill {version()}"
+        self.assertRegex(done.stdout + done.stderr, refusal)
         self.root.must("/other/bin/pip uninstall --yes --quiet scanmill")
         self.assertEqual(self.root.must("find /other -ipath '*scanmill*'"), "")
         self.assertIn("No module named scanmill", self.root.run("/other/bin/python3 -m scanmill").stderr)
@@ -215,14 +212,14 @@ class WheelTests:
         done = self.root.run(f"{self.command} list")
         self.root.must(f"mv {binary}.away {binary}")
         self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r"error: '.*/bin/scanmill' cannot be started: No such file or directory\nhint: install the package again")
+        self.assertRegex(done.stderr, r"error: '.*/bin/scanmill' cannot be started: No such file or directory\nhint: install")
         self.root.must("mount --bind /venv /venv && mount -o remount,noexec,bind /venv")
         done = self.root.run("/usr/bin/env PYTHONPATH=$(echo /venv/lib/*/site-packages) python3 -m scanmill list")
         shell(f"umount --lazy '{self.root.path}/venv'")
         self.assertEqual(done.returncode, 3)
         self.assertRegex(done.stderr, r"cannot be started: Permission denied\nhint: .*noexec")
 
-    def test_a_full_disk_and_an_older_c_library_are_refused(self) -> None:
+    def test_a_full_disk_is_refused(self) -> None:
         self.root.must("mkdir -p /small && mount -t tmpfs -o size=60m tmpfs /small && python3 -m venv /small/venv")
         done = self.root.run(f"/small/venv/bin/{INSTALL} /{self.wheel.name}")
         self.assertNotEqual(done.returncode, 0)
@@ -234,9 +231,6 @@ class WheelTests:
         self.root.must(f"/small/venv/bin/{INSTALL} /{self.wheel.name}")
         self.check_results("/small/venv/bin/scanmill")
         self.root.must("umount /small")
-        done = self.root.run(f"/venv/bin/{INSTALL} --platform manylinux_2_31_x86_64 --only-binary=:all: --no-deps --target /old /{self.wheel.name}")
-        self.assertIn("is not a supported wheel on this platform", done.stderr)
-        print_figure(f"{self.suite}: older C library: {done.stderr.strip().splitlines()[-1]}")
 
 
 OTHER = "0.1.0"[:-1] + "9"
@@ -268,6 +262,23 @@ class WheelOnDebian12(WheelTests, Package):
 
 class WheelOnDebian13(WheelTests, Package):
     suite = "trixie"
+
+
+class WheelOnDebian11(unittest.TestCase):
+    def test_an_older_c_library_is_refused(self) -> None:
+        try:
+            root = Root("bullseye", "bullseye", "python3,python3-venv")
+        except subprocess.CalledProcessError:
+            self.skipTest("needs Debian 11, which this machine's archive does not have")
+        try:
+            wheel = the_only("scanmill-*.whl")
+            root.put(wheel, "/")
+            done = root.run(f"python3 -m venv /venv && /venv/bin/{INSTALL.replace(' --root-user-action=ignore', '')} /{wheel.name}")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("is not a supported wheel on this platform", done.stderr)
+            print_figure(f"older C library: {done.stderr.strip().splitlines()[0]}")
+        finally:
+            root.close()
 
 
 class DebOnDebian12(Package):
@@ -412,7 +423,8 @@ class Image(unittest.TestCase):
                 shutil.copy(scan, work / "work")
             shell(f"chown -R 1234:1234 '{work}/work'; chmod 755 '{work}'")
             how = self.run_in_podman(image, work) or self.run_in_chroot(image, work)
-            self.assertEqual(hashes(work / "work/out"), {name: value for name, value in Expected.results["quickstart"].items() if ".stl" in name})
+            expected = {name: value for name, value in Expected.results["quickstart"].items() if name.endswith(".stl")}
+            self.assertEqual(hashes(work / "work/out"), expected)
             self.assertEqual((work / "work/out/kitten.stl").stat().st_uid, 1234)
             print_figure(f"{image.name}, {image.stat().st_size / 1e6:.0f} MB: quickstart in {how} has the bytes of the source build")
 
