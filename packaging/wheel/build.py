@@ -46,9 +46,10 @@ def run(*command: object) -> str:
 
 
 def readme() -> str:
-    """The first page without its pictures and with the names of linked pages: neither is part of the wheel."""
+    """The first page without tables of pictures, and with the names of linked pages: neither is part of the wheel."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    text = re.sub(r"<!--.*?-->\n?|<br>|<img [^>]*>|!\[[^\]]*\]\([^)]*\)", "", text)
+    text = re.sub(r"(?:^[|].*\n)+", lambda table: "" if "![" in table[0] or "<img" in table[0] else table[0], text, flags=re.MULTILINE)
+    text = re.sub(r"<!--.*?-->\n?", "", text)
     return re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
 
 
