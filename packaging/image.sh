@@ -5,7 +5,7 @@
 #     podman import --change 'ENTRYPOINT ["scanmill"]' --change 'WORKDIR /work' DIST/scanmill-VERSION-image.tar.gz scanmill
 #     podman run --rm --user "$(id -u):$(id -g)" -e HOME=/tmp -v "$PWD:/work" scanmill run quickstart scan.ply
 #
-# docker takes the same arguments.
+# The image has Debian 12 and the .deb with its libraries.
 set -euo pipefail
 dist=$(realpath "$1")
 package=$(ls "$dist"/scanmill_*.deb)
