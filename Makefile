@@ -5,7 +5,8 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper pictures test test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
+.PHONY: help demo nightly paper pictures test test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
+	wheel deb image test-packages packages-deps
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -127,3 +128,18 @@ lint: ## run clang-tidy and clang's warnings over the C++ code
 	tools/deps.sh
 	tools/deps.sh lint
 	tools/lint.sh
+
+packages-deps: deps
+	tools/deps.sh packages
+
+wheel: packages-deps release ## make dist/scanmill-….whl for pip
+	$$(packaging/wheel/environment.sh build/packages/python) packaging/wheel/build.py build/release dist
+
+deb: packages-deps release ## make dist/scanmill_….deb for Debian 12
+	packaging/deb/build.sh build/release dist
+
+image: deb ## make dist/scanmill-…-image.tar.gz, a root file system with the .deb, for podman and docker
+	packaging/image.sh dist
+
+test-packages: data wheel image ## install the wheel and the .deb in empty systems and test them there; needs root
+	tests/packages/run.sh

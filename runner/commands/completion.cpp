@@ -152,7 +152,8 @@ _scanmill() {{
     case $command in
 {}    esac
 }}
-compdef _scanmill scanmill
+# As a file that zsh loads for the first completion, it completes at once.
+if [ "$funcstack[1]" = _scanmill ]; then _scanmill "$@"; else compdef _scanmill scanmill; fi
 )sh",
                        names, cases);
 }

@@ -117,6 +117,9 @@ TEST(Guide, PluginGuide_MakesAFilterThatWorks) {
     const Guide guide = read_guide(source / "docs/plugin-guide/README.md");
     ASSERT_GE(guide.commands.size(), 8u);
     follow(guide, folder.path(), folder / "home");
+    const std::string install_module = "cmake --install '" + (folder / "build").string() + "' >/dev/null";
+    ASSERT_EQ(std::system(install_module.c_str()), 0);
+    EXPECT_TRUE(fs::exists(prefix / "lib/scanmill/plugins/scanmill-crop-sphere.so")) << "beside Scanmill's own modules";
 }
 
 }  // namespace

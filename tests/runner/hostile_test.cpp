@@ -77,7 +77,7 @@ protected:
 
 TEST_F(Hostile, LibrariesInTheWorkingFolder_AreNeverLoaded) {
     for (const char* name :
-         {"libfmt.so.9", "libstdc++.so.6", "libtbb.so.12", "libscanmill-core.so.0", "libxxhash.so.0"})
+         {"libfmt.so.9", "libstdc++.so.6", "libtbb.so.12", "libscanmill-core.so." SCANMILL_VERSION, "libxxhash.so.0"})
         folder_.write(name, "this module cannot be loaded");
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("a.xyz", four_points);

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# environment.sh FOLDER: creates a Python environment with the packages of requirements.txt in FOLDER and prints the path of
+# its interpreter. Does not change an environment that already has these packages.
+set -euo pipefail
+folder=$1
+wanted=$(dirname "$0")/requirements.txt
+if ! cmp -s "$wanted" "$folder/requirements.txt"; then
+    python3 -m venv --clear "$folder"
+    "$folder/bin/pip" install --quiet --disable-pip-version-check -r "$wanted"
+    cp "$wanted" "$folder/requirements.txt"
+fi
+echo "$folder/bin/python"
