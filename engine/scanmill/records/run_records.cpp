@@ -122,8 +122,18 @@ struct RunRecords::Database {
     }
     void require_layout() {
         if (number() == layout_number()) return;
-        throw Error("the records '{}' have another layout than this version of Scanmill writes", file)
+        const std::string writer = last_version();
+        throw Error("the records '{}' have another layout than this version of Scanmill writes{}", file,
+                    writer.empty() ? "" : "; Scanmill " + writer + " wrote them last")
             .hint("use the Scanmill that wrote them, or move the file away to start a new history");
+    }
+    /// The version of the program that wrote the last run; empty if the file, of any layout, does not say it.
+    std::string last_version() {
+        try {
+            return sqlite.execAndGet("SELECT version FROM run ORDER BY id DESC LIMIT 1").getString();
+        } catch (const SQLite::Exception&) {
+            return {};
+        }
     }
 
     static constexpr int patience = 1000;  // milliseconds to wait while another run writes
@@ -181,10 +191,10 @@ std::string RunRecords::now() const {
     return database_->sqlite.execAndGet("SELECT strftime('%Y-%m-%dT%H:%M:%SZ', 'now')").getString();
 }
 
-std::int64_t RunRecords::begin(const RunStart& start) {
+std::int64_t RunRecords::begin(const RunStart& start, const std::string& started) {
     return about(database_->file, [&] {
         SQLite::Transaction transaction(database_->sqlite);
-        const RowId run = tables::insert(database_->statements, "run", RunRow{now(), start});
+        const RowId run = tables::insert(database_->statements, "run", RunRow{started.empty() ? now() : started, start});
         transaction.commit();
         return run;
     });
@@ -247,7 +257,8 @@ std::vector<RunSummary> RunRecords::summaries(std::optional<std::int64_t> id) co
         const std::string sql =
             "SELECT run.id, started, workflow, run_end.outcome, counts.cells, counts.doubtful, counts.failed, "
             "(SELECT verdict.regressions FROM gate_verdict AS verdict WHERE verdict.parent = run.id "
-            "ORDER BY verdict.id DESC LIMIT 1), counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT JOIN run_end ON "
+            "ORDER BY verdict.id DESC LIMIT 1), counts.ran, counts.cached, COALESCE(run_end.seconds, 0) FROM run LEFT "
+            "JOIN run_end ON "
             "run_end.parent = run.id JOIN run_counts AS counts ON counts.run = run.id";
         SQLite::Statement rows(database_->sqlite, sql + (id ? " WHERE run.id = ?" : " ORDER BY run.id"));
         if (id) rows.bind(1, *id);

@@ -246,6 +246,20 @@ TEST_F(Records, OfAnotherLayout_AreRefusedAndLeftAlone) {
     }
 }
 
+TEST_F(Records, OfAnotherLayout_NameTheProgramThatWroteThem) {
+    RunStart start = some_start();
+    start.version = "0.9.0";
+    RunRecords::append_to(file()).begin(start);
+    SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
+    EXPECT_THAT(error_of([&] { RunRecords::read(file()); }).sentence(), HasSubstr("; Scanmill 0.9.0 wrote them last"));
+}
+
+/// If this number changes, files of version 0.1.0 need a conversion, or the command that makes one.
+TEST_F(Records, Layout_IsThatOfTheFirstVersion) {
+    RunRecords::append_to(file());
+    EXPECT_EQ(SQLite::Database(file().string()).execAndGet("PRAGMA user_version").getInt(), 74448418);
+}
+
 TEST_F(Records, ARunAfterAnotherOfEqualNodes_CountsEachNodeOnce) {
     RunRecords records = RunRecords::append_to(file());
     const std::int64_t run = records.begin(some_start());
