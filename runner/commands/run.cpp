@@ -24,6 +24,7 @@
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/batch/choice.hpp"
 #include "scanmill/batch/objects.hpp"
+#include "scanmill/batch/shard.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
@@ -50,7 +51,7 @@ struct RunOptions {
 };
 
 struct BatchOptions {
-    std::string file;
+    std::string file, shard;
     BatchChoice choice;
     ExecuteOptions execute;
 };
@@ -264,7 +265,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
                : report.has_fault()                                                       ? our_fault
                                                                                           : some_failed;
     std::optional<Comparison> comparison;
-    if (is_batch && !report.interrupted) {
+    if (is_batch && !report.interrupted && task.shard.empty()) {  // shards are judged together
         // Known doubts do not count, so the comparison decides whether a doubtful result is an error.
         if (options_.strict && report.outcome() == Outcome::doubtful) code = done;
         comparison = judge(task, number, code);
@@ -464,7 +465,12 @@ int run_batch(const BatchOptions& options) {
     Execution execution(options.execute);
     CheckedBatch checked = check_batch(text, batch_file, execution.library());
     if (!report(checked.diagnostics, options.execute.json)) return bad_request;
-    choose(checked, options.choice);
+    const std::string key = key_of_cells(checked);
+    const CellPlaces places(checked);
+    if (options.shard.empty())
+        choose(checked, options.choice);
+    else
+        choose(checked, Shard::parse(options.shard));
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked, part, options.execute)});
@@ -474,6 +480,11 @@ int run_batch(const BatchOptions& options) {
     SessionTask task{checked.batch.name, batch_file, std::move(graph), checked.batch.limits};
     // A partial run gets its own name, because the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
+    if (!options.shard.empty()) {
+        task.shard = options.shard;
+        task.key_of_cells = key;
+        places.set(task.graph);
+    }
     if (checked.batch.gate) task.gate = *checked.batch.gate;
     return execution.run(task, true);
 }
@@ -518,10 +529,16 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
                "Run only this scan, a path from the batch's folder (may be repeated)");
     add_choice("--workflow", batch_options.choice.workflows, "Run only the workflow of this name (may be repeated)");
     add_choice("--only", batch_options.choice.variants, "Run only this variant (may be repeated)");
+    CLI::Option* shard = batch.add_option(
+        "--shard", batch_options.shard,
+        "Run only a part of the cells, I/N as 3/7: machines run one each, with an output folder each, and "
+        "`scanmill runs merge` makes one run of them");
+    for (const char* other : {"--scan", "--workflow", "--only"}) shard->excludes(other);
     add_execute_options(batch, batch_options.execute);
     batch.add_option("--html", batch_options.execute.html,
                      "Write the report as one HTML file after the run, as `scanmill report DIR --html` does");
     batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line")->excludes("--html");
+    shard->excludes("--html");
     options.execute.session.command_line = batch_options.execute.session.command_line = command_line;
 }
 

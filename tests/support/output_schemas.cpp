@@ -44,6 +44,7 @@ std::string schema_of(const std::vector<std::string>& arguments, const json& doc
     }
     if (command == "show" && has("--example")) return "show-example";
     if (command == "runs" && has("--prune")) return "runs-prune";
+    if (command == "runs" && has("merge")) return "runs-merge";
     if (command == "runs" && has("show")) return "runs-show";
     if (command == "cache") return has("clear") ? "cache-clear" : "cache-info";
     return command;

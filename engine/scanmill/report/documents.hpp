@@ -74,6 +74,17 @@ constexpr auto fields(const PrunedDocument*) {
                       field("records-after", &R::records_after, "Size of the file with the records now.")};
 }
 
+struct MergedDocument {
+    std::int64_t run = 0;
+    std::size_t shards = 0, cells = 0, moved = 0, copied = 0;
+};
+constexpr auto fields(const MergedDocument*) {
+    using R = MergedDocument;
+    return std::tuple{field("run", &R::run, "Number of the new run."), field("shards", &R::shards),
+                      field("cells", &R::cells), field("moved", &R::moved, "Files that were moved."),
+                      field("copied", &R::copied, "Files that were copied to another file system.")};
+}
+
 struct RunsDocument {
     std::vector<ListedRun> runs;
 };
