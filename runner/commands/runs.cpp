@@ -6,15 +6,19 @@
 #include <map>
 
 #include "commands/commands.hpp"
+#include "output/comparison_text.hpp"
+#include "output/reproduce.hpp"
 #include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/compare/formats.hpp"
+#include "scanmill/compare/recorded.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/records/run_records.hpp"
 #include "scanmill/report/documents.hpp"
-#include "scanmill/session/output_lock.hpp"
 #include "scanmill/session/merge_runs.hpp"
+#include "scanmill/session/output_lock.hpp"
 #include "scanmill/session/prune.hpp"
 
 namespace scanmill::runner {
