@@ -6,13 +6,13 @@
 #include <map>
 
 #include "commands/commands.hpp"
+#include "commands/common.hpp"
 #include "output/comparison_text.hpp"
 #include "output/reproduce.hpp"
 #include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/records/run_records.hpp"

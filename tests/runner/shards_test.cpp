@@ -29,10 +29,10 @@ protected:
                           "0 0 0\n1 0 0\n0 2 0\n1 2 " + std::to_string(scan + 2) + "\n");
         folder_.write("w.yaml",
                       "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n"
-                      "  - voxel-thin: {bin-size: {sweep: [0.1 u, 3 u]}}\n    expect: {points-after: '> 2'}\n"
+                      "  - voxel-thin: {bin-size: {sweep: [0.1 u, 3 u]}}\n    expect: {points: '> 2'}\n"
                       "outputs: {'{scan}-{variant}.ply': voxel-thin}\n");
         folder_.write("all.yaml",
-                      "scanmill: 1\nname: all\ninputs: {views: points list}\nsteps:\n  - merge:\n"
+                      "scanmill: 1\nname: all\ninputs: {views: [points]}\nsteps:\n  - merge:\n"
                       "outputs: {'together.ply': merge}\n");
         write_batch("genus: exact");
     }
