@@ -85,6 +85,22 @@ constexpr auto fields(const MergedDocument*) {
                       field("copied", &R::copied, "Files that were copied to another file system.")};
 }
 
+struct ExportDocument {
+    std::size_t chunks = 0, cells = 0;
+    double core_seconds = 0, longest = 0;
+    unsigned minutes = 0, megabytes = 0;
+    std::size_t estimated = 0;
+};
+constexpr auto fields(const ExportDocument*) {
+    using R = ExportDocument;
+    return std::tuple{field("chunks", &R::chunks), field("cells", &R::cells),
+                      field("core-seconds", &R::core_seconds, "Expected time of all cells on one core."),
+                      field("longest-seconds", &R::longest, "Expected time of the longest chunk."),
+                      field("minutes", &R::minutes, "Time limit of a chunk."),
+                      field("megabytes", &R::megabytes, "Memory of a chunk."),
+                      field("estimated-units", &R::estimated, "Units whose time is estimated from the sizes of files.")};
+}
+
 struct RunsDocument {
     std::vector<ListedRun> runs;
 };

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/io/mapped_file.hpp"
 #include "scanmill/record/json.hpp"
+#include "scanmill/session/output_lock.hpp"
 
 namespace scanmill {
 
@@ -85,7 +87,7 @@ ChunkFile read_chunk(const fs::path& file) {
         read_json(Json::parse(MappedFile(file).bytes()), chunk);
     } catch (const Json::exception& error) {
         throw Error("'{}' is not the file of a chunk: {}", file.string(), error.what())
-            .hint("`scanmill export` writes such files");
+            .hint("an export of the batch writes such files");
     }
     return chunk;
 }
@@ -143,6 +145,44 @@ std::vector<Chunk> chunks_of(const CheckedBatch& checked, const std::vector<Unit
         chunks[number].file.key_of_cells = key;
     }
     return chunks;
+}
+
+fs::path part_of_chunk(const fs::path& folder, std::size_t number) { return folder / fmt::format("parts/{:04}", number); }
+fs::path file_of_chunk(const fs::path& folder, std::size_t number) {
+    return folder / fmt::format("chunks/{:04}.json", number);
+}
+
+static ChunkStatus status_of(const fs::path& folder, std::size_t number) {
+    ChunkStatus status;
+    status.chunk = number;
+    const fs::path part = part_of_chunk(folder, number);
+    std::error_code ignored;
+    if (OutputLock::is_held(part)) {
+        status.state = ChunkState::running;
+        return status;
+    }
+    if (!fs::exists(part / records_file, ignored)) return status;
+    try {
+        const std::vector<RunSummary> runs = RunRecords::read(part / records_file).runs();
+        if (runs.empty()) return status;
+        const bool has_ended = runs.back().outcome && *runs.back().outcome != "interrupted";
+        status.state = has_ended ? ChunkState::done : ChunkState::failed;
+        status.cells = runs.back().cells;
+        status.failed_cells = runs.back().failed;
+    } catch (const Error&) {
+        status.state = ChunkState::failed;
+    }
+    return status;
+}
+
+std::vector<ChunkStatus> chunk_states(const fs::path& folder) {
+    std::vector<ChunkStatus> states;
+    std::error_code ignored;
+    while (fs::exists(file_of_chunk(folder, states.size() + 1), ignored))
+        states.push_back(status_of(folder, states.size() + 1));
+    if (states.empty())
+        throw Error("'{}' has no chunks", folder.string()).hint("name the folder that an export of the batch wrote");
+    return states;
 }
 
 }  // namespace scanmill

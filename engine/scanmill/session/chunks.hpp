@@ -2,10 +2,12 @@
 #pragma once
 /// Chunks of a batch for a scheduler: shards of about equal time, each with a file that lists its units.
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scanmill/batch/shard.hpp"
@@ -47,5 +49,38 @@ struct Chunk {
 
 /// Divides the units, in their order, into chunks that end when `seconds` is reached. Pre: seconds > 0.
 std::vector<Chunk> chunks_of(const CheckedBatch& batch, const std::vector<UnitCost>& costs, double seconds);
+
+/// The folder of a chunk's outputs in the folder `folder` of an export, and the file of the chunk: `parts/0003` and
+/// `chunks/0003.json`.
+std::filesystem::path part_of_chunk(const std::filesystem::path& folder, std::size_t number);
+std::filesystem::path file_of_chunk(const std::filesystem::path& folder, std::size_t number);
+
+/// `failed`: the last run was interrupted or killed, or its records cannot be read. A chunk of which scans failed is done.
+enum class ChunkState { waiting, running, done, failed };
+constexpr std::array<std::string_view, 4> names_of(const ChunkState*) {
+    return {"waiting", "running", "done", "failed"};
+}
+
+struct ChunkStatus {
+    std::size_t chunk = 0, cells = 0, failed_cells = 0;
+    ChunkState state = ChunkState::waiting;
+};
+constexpr auto fields(const ChunkStatus*) {
+    using R = ChunkStatus;
+    return std::tuple{field("chunk", &R::chunk, "Number of the chunk, from 1."),
+                      field("state", &R::state),
+                      field("cells", &R::cells, "Recorded cells of its last run."),
+                      field("failed-cells", &R::failed_cells)};
+}
+
+struct BatchStatusDocument {
+    std::vector<ChunkStatus> chunks;
+};
+constexpr auto fields(const BatchStatusDocument*) {
+    return std::tuple{field("chunks", &BatchStatusDocument::chunks)};
+}
+
+/// The states of all chunks in the folder of an export. Throws Error if it has no chunks.
+std::vector<ChunkStatus> chunk_states(const std::filesystem::path& folder);
 
 }  // namespace scanmill
