@@ -69,12 +69,6 @@ ListedRun listed(const Folder& folder, const RunSummary& run) {
     return listed;
 }
 
-void print_document(const Json& members) {
-    Json json{{"scanmill", 1}};
-    json.update(members);
-    print_json(json);
-}
-
 /// "baseline, by ann: the new mesher" for each acceptance of the run; empty without acceptances.
 std::string accepted_text(const Folder& folder, const RunSummary& run) {
     std::string text;
