@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     Action chosen;
     add_run_and_batch(app, chosen, {argv, argv + argc});
+    add_export(app, chosen);
     add_check(app, chosen);
     add_list_and_show(app, chosen);
     add_info(app, chosen);

@@ -31,6 +31,7 @@ std::pair<CLI::App&, Options&> add_command(CLI::App& parent, Action& chosen, con
 
 /// `command_line`: the program and its arguments, for the records.
 void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line);
+void add_export(CLI::App& app, Action& chosen);
 void add_check(CLI::App& app, Action& chosen);
 void add_list_and_show(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <csignal>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -24,8 +25,10 @@
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/batch/choice.hpp"
 #include "scanmill/batch/objects.hpp"
+#include "scanmill/batch/shard.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
+#include "scanmill/session/chunks.hpp"
 #include "scanmill/session/session.hpp"
 #include "scanmill/workflow/ready.hpp"
 
@@ -50,7 +53,9 @@ struct RunOptions {
 };
 
 struct BatchOptions {
-    std::string file;
+    std::string file, shard;
+    std::filesystem::path cells;
+    bool is_status = false;
     BatchChoice choice;
     ExecuteOptions execute;
 };
@@ -264,7 +269,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
                : report.has_fault()                                                       ? our_fault
                                                                                           : some_failed;
     std::optional<Comparison> comparison;
-    if (is_batch && !report.interrupted) {
+    if (is_batch && !report.interrupted && task.shard.empty()) {  // shards are judged together
         // Known doubts do not count, so the comparison decides whether a doubtful result is an error.
         if (options_.strict && report.outcome() == Outcome::doubtful) code = done;
         comparison = judge(task, number, code);
@@ -455,7 +460,32 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
     return files;
 }
 
+/// Prints the states of the chunks in the folder of an export. Returns some_failed if one failed.
+int print_status(const std::filesystem::path& folder, bool json) {
+    const std::vector<ChunkStatus> states = chunk_states(folder);
+    std::map<ChunkState, std::vector<std::string>> chunks;
+    std::size_t cells = 0, failed = 0;
+    for (const ChunkStatus& status : states) {
+        chunks[status.state].push_back(std::to_string(status.chunk));
+        cells += status.cells;
+        failed += status.failed_cells;
+    }
+    if (json) {
+        print_document(json_of(BatchStatusDocument{states}));
+    } else {
+        for (const auto& [state, numbers] : chunks) {
+            std::string list;
+            for (const std::string& number : numbers) list += (list.empty() ? "" : ",") + number;
+            fmt::print("{:<8} {:>5}  {}\n", name_of(state), numbers.size(), list);
+        }
+        fmt::print("{} of {} recorded, of which {} failed\n", count_text(cells, "cell is", "cells are"),
+                   count_text(states.size(), "chunk", "chunks"), failed);
+    }
+    return chunks.contains(ChunkState::failed) ? some_failed : done;
+}
+
 int run_batch(const BatchOptions& options) {
+    if (options.is_status) return print_status(options.file, options.execute.json);
     const std::string batch_file = workflow_file(options.file, print_warning);
     const std::string text = read_workflow_file(batch_file);
     if (!is_batch(text))
@@ -464,7 +494,21 @@ int run_batch(const BatchOptions& options) {
     Execution execution(options.execute);
     CheckedBatch checked = check_batch(text, batch_file, execution.library());
     if (!report(checked.diagnostics, options.execute.json)) return bad_request;
-    choose(checked, options.choice);
+    const std::string key = key_of_cells(checked);
+    const CellPlaces places(checked);
+    std::string shard = options.shard;
+    if (!options.cells.empty()) {
+        const ChunkFile chunk = read_chunk(options.cells);
+        if (chunk.key_of_cells != key)
+            throw Error("the batch has changed since '{}' was written", options.cells.string())
+                .hint("export the batch again");
+        choose(checked, chunk.units);
+        shard = chunk.shard;
+    } else if (!shard.empty()) {
+        choose(checked, Shard::parse(shard));
+    } else {
+        choose(checked, options.choice);
+    }
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked, part, options.execute)});
@@ -474,6 +518,11 @@ int run_batch(const BatchOptions& options) {
     SessionTask task{checked.batch.name, batch_file, std::move(graph), checked.batch.limits};
     // A partial run gets its own name, because the batch's other cells must not count as missing.
     if (!options.choice.is_all()) task.name += ", in part";
+    if (!shard.empty()) {
+        task.shard = shard;
+        task.key_of_cells = key;
+        places.set(task.graph);
+    }
     if (checked.batch.gate) task.gate = *checked.batch.gate;
     return execution.run(task, true);
 }
@@ -518,10 +567,23 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
                "Run only this scan, a path from the batch's folder (may be repeated)");
     add_choice("--workflow", batch_options.choice.workflows, "Run only the workflow of this name (may be repeated)");
     add_choice("--only", batch_options.choice.variants, "Run only this variant (may be repeated)");
+    CLI::Option* shard = batch.add_option(
+        "--shard", batch_options.shard,
+        "Run only a part of the cells, I/N as 3/7: machines run one each, with an output folder each, and "
+        "`scanmill runs merge` makes one run of them");
+    CLI::Option* cells = batch.add_option("--cells", batch_options.cells,
+                                          "Run only the cells of this chunk, a file that `scanmill export` writes");
+    CLI::Option* status = batch.add_flag("--status", batch_options.is_status,
+                                         "Print which chunks are done, running and failed; FILE is the folder that "
+                                         "`scanmill export` wrote");
+    cells->excludes(shard);
+    for (const char* other : {"--scan", "--workflow", "--only"})
+        for (CLI::Option* part : {shard, cells, status}) part->excludes(other);
     add_execute_options(batch, batch_options.execute);
     batch.add_option("--html", batch_options.execute.html,
                      "Write the report as one HTML file after the run, as `scanmill report DIR --html` does");
     batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line")->excludes("--html");
+    for (CLI::Option* part : {shard, cells, status}) part->excludes("--html");
     options.execute.session.command_line = batch_options.execute.session.command_line = command_line;
 }
 

@@ -6,13 +6,18 @@
 #include <map>
 
 #include "commands/commands.hpp"
+#include "commands/common.hpp"
+#include "output/comparison_text.hpp"
+#include "output/reproduce.hpp"
 #include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/compare/recorded.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/records/run_records.hpp"
 #include "scanmill/report/documents.hpp"
+#include "scanmill/session/merge_runs.hpp"
 #include "scanmill/session/output_lock.hpp"
 #include "scanmill/session/prune.hpp"
 
@@ -62,12 +67,6 @@ ListedRun listed(const Folder& folder, const RunSummary& run) {
         listed.accepted.push_back(std::move(document));
     }
     return listed;
-}
-
-void print_document(const Json& members) {
-    Json json{{"scanmill", 1}};
-    json.update(members);
-    print_json(json);
 }
 
 /// "baseline, by ann: the new mesher" for each acceptance of the run; empty without acceptances.
@@ -229,9 +228,36 @@ struct Options {
     std::filesystem::path folder;
     std::string show, id;
     std::optional<std::int64_t> keep;
-    bool json = false, prunes = false, dry_run = false;
+    bool json = false, prunes = false, dry_run = false, merges = false;
+    std::vector<std::filesystem::path> shards;  ///< for `merge`
+    std::filesystem::path output;
     std::vector<std::string> command_line;
 };
+
+/// Prints the verdict of the gate on a merged run, records it, and returns the exit code.
+int judge(const std::filesystem::path& folder, std::int64_t run, bool prints) {
+    const RunSummary summary = RunRecords::read(folder / records_file).summary(run);
+    int code = summary.failed > 0 ? some_failed : done;
+    const std::optional<Comparison> comparison = verdict_of_batch(folder, run, reproducing_command);
+    if (!comparison) return code;
+    if (!comparison->gate.rules.empty())
+        records_to_change(folder).add_verdict(run, comparison->count(Verdict::regressed));
+    if (prints) fmt::print("{}", verdict_text(*comparison, folder));
+    return std::max<int>(code, exit_code_of(*comparison, false));
+}
+
+int merge(const Options& options) {
+    const MergedRuns merged = merge_runs(options.shards, options.output, options.command_line, print_warning);
+    if (options.json) {
+        print_document(json_of(MergedDocument{merged.run, merged.shards, merged.cells, merged.moved, merged.copied}));
+        return judge(options.output, merged.run, false);
+    }
+    fmt::print("run {} of {} has {} of {}; {} moved, {} copied\n", merged.run,
+               printable_line(shown_path(options.output)), count_text(merged.cells, "cell", "cells"),
+               count_text(merged.shards, "shard", "shards"), count_text(merged.moved, "file was", "files were"),
+               merged.copied);
+    return judge(options.output, merged.run, true);
+}
 
 int prune_runs(const Options& options) {
     if (!options.show.empty()) throw Error("--prune removes runs, and `show` prints one").hint("give one of them");
@@ -273,6 +299,9 @@ int prune_runs(const Options& options) {
 }
 
 int runs(const Options& options) {
+    if (options.merges) return merge(options);
+    if (options.folder.empty())
+        throw Error("the output folder of the runs is missing").hint("scanmill runs DIR lists the runs in DIR");
     if (options.prunes) return prune_runs(options);
     if (options.keep || options.dry_run)
         throw Error("{} is for --prune", options.keep ? "--keep" : "--dry-run")
@@ -290,7 +319,7 @@ int runs(const Options& options) {
 void add_runs(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line) {
     auto [command, options] = add_command<Options>(
         app, chosen, "runs", "Lists the runs recorded in an output folder, or shows one of them", runs);
-    command.add_option("DIR", options.folder, "The output folder of the runs")->required();
+    command.add_option("DIR", options.folder, "The output folder of the runs");
     command.add_option("show", options.show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
     command.add_option("ID", options.id, "The run's number in the list");
     command.add_flag(
@@ -301,6 +330,14 @@ void add_runs(CLI::App& app, Action& chosen, const std::vector<std::string>& com
     command.add_flag("--dry-run", options.dry_run, "Print what --prune would remove, and remove nothing");
     options.command_line = command_line;
     command.add_flag("--json", options.json, "Print the result as JSON");
+
+    CLI::App* merging = command.add_subcommand(
+        "merge", "Makes one run of the shards of a batch, and moves their outputs into one folder");
+    Options& merge_options = options;
+    merging->callback([&merge_options] { merge_options.merges = true; });
+    merging->add_option("DIR", merge_options.shards, "The output folders of all shards (batch --shard)")->required();
+    merging->add_option("-o,--output", merge_options.output, "The output folder of the whole run")->required();
+    merging->add_flag("--json", merge_options.json, "Print the result as JSON");
 }
 
 }  // namespace scanmill::runner

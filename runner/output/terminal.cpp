@@ -153,6 +153,12 @@ void print_json(const nlohmann::ordered_json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+void print_document(const nlohmann::ordered_json& members) {
+    nlohmann::ordered_json json{{"scanmill", 1}};
+    json.update(members);
+    print_json(json);
+}
+
 void Table::add(std::vector<std::string> row) {
     for (std::string& cell : row) cell = printable_line(cell);
     rows_.push_back(std::move(row));

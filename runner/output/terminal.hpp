@@ -41,6 +41,8 @@ void print_warning(std::string_view text);
 
 /// Prints indented JSON on stdout. Replaces invalid UTF-8, which names of files may contain.
 void print_json(const nlohmann::ordered_json& json);
+/// The same for the members of a document, after the version of the language.
+void print_document(const nlohmann::ordered_json& members);
 
 /// The text as stdout and stderr of this process can show it: where the locale names a character set other than UTF-8,
 /// "…", "²" and "³" become "~", "2" and "3".

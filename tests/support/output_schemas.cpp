@@ -37,6 +37,7 @@ std::string schema_of(const std::vector<std::string>& arguments, const json& doc
     const auto has = [&](const char* word) { return std::ranges::find(arguments, word) != arguments.end(); };
     const std::string& command = arguments.front();
     if (document.contains("error") && !document.contains("event")) return "error";
+    if (command == "batch" && has("--status")) return "batch-status";
     if (command == "run" || command == "batch") {
         if (document.contains("files")) return "check";
         if (has("--dry-run")) return "dry-run";
@@ -44,6 +45,7 @@ std::string schema_of(const std::vector<std::string>& arguments, const json& doc
     }
     if (command == "show" && has("--example")) return "show-example";
     if (command == "runs" && has("--prune")) return "runs-prune";
+    if (command == "runs" && has("merge")) return "runs-merge";
     if (command == "runs" && has("show")) return "runs-show";
     if (command == "cache") return has("clear") ? "cache-clear" : "cache-info";
     return command;

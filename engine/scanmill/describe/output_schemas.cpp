@@ -10,6 +10,7 @@
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/plugin/manifest.hpp"
 #include "scanmill/report/documents.hpp"
+#include "scanmill/session/chunks.hpp"
 
 namespace scanmill {
 
@@ -166,6 +167,9 @@ Json document_of(const char* title) {
 Json run_schema() { return document_of<RunDocument>("scanmill run"); }
 Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR"); }
 Json runs_prune_schema() { return document_of<PrunedDocument>("scanmill runs DIR, when it prunes"); }
+Json runs_merge_schema() { return document_of<MergedDocument>("scanmill runs merge DIR…"); }
+Json export_schema() { return document_of<ExportDocument>("scanmill export"); }
+Json batch_status_schema() { return document_of<BatchStatusDocument>("scanmill batch --status"); }
 Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID"); }
 
 Json report_schema() {
@@ -201,7 +205,7 @@ Json batch_event_schema() {
     return schema;
 }
 
-constexpr std::array<std::pair<const char*, Json (*)()>, 16> outputs{{{"list", list_schema},
+constexpr std::array<std::pair<const char*, Json (*)()>, 19> outputs{{{"list", list_schema},
                                                                       {"show", show_schema},
                                                                       {"show-example", show_example_schema},
                                                                       {"check", check_schema},
@@ -210,6 +214,9 @@ constexpr std::array<std::pair<const char*, Json (*)()>, 16> outputs{{{"list", l
                                                                       {"dry-run", dry_run_schema},
                                                                       {"runs", runs_schema},
                                                                       {"runs-prune", runs_prune_schema},
+                                                                      {"runs-merge", runs_merge_schema},
+                                                                      {"export", export_schema},
+                                                                      {"batch-status", batch_status_schema},
                                                                       {"runs-show", runs_show_schema},
                                                                       {"info", info_schema},
                                                                       {"measure", measure_schema},

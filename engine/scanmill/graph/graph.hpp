@@ -140,6 +140,7 @@ struct RunCell {
     std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
+    std::size_t place = 0;  ///< of a shard: place among all cells of the batch
 };
 
 struct RunGraph {

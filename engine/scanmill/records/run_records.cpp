@@ -191,10 +191,10 @@ std::string RunRecords::now() const {
     return database_->sqlite.execAndGet("SELECT strftime('%Y-%m-%dT%H:%M:%SZ', 'now')").getString();
 }
 
-std::int64_t RunRecords::begin(const RunStart& start) {
+std::int64_t RunRecords::begin(const RunStart& start, const std::string& started) {
     return about(database_->file, [&] {
         SQLite::Transaction transaction(database_->sqlite);
-        const RowId run = tables::insert(database_->statements, "run", RunRow{now(), start});
+        const RowId run = tables::insert(database_->statements, "run", RunRow{started.empty() ? now() : started, start});
         transaction.commit();
         return run;
     });

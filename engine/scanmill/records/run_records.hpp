@@ -75,8 +75,8 @@ public:
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();
 
-    /// Adds a run and returns its number.
-    std::int64_t begin(const RunStart& start);
+    /// Adds a run and returns its number. `started`: as in RunSummary; empty: now.
+    std::int64_t begin(const RunStart& start, const std::string& started = {});
     /// Appends rows in one transaction. Throws Error if the disk is full.
     void add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
     /// Appends the last rows and the outcome of the run in one transaction.

@@ -75,6 +75,33 @@ constexpr auto fields(const PrunedDocument*) {
                       field("records-after", &R::records_after, "Size of the file with the records now.")};
 }
 
+struct MergedDocument {
+    std::int64_t run = 0;
+    std::size_t shards = 0, cells = 0, moved = 0, copied = 0;
+};
+constexpr auto fields(const MergedDocument*) {
+    using R = MergedDocument;
+    return std::tuple{field("run", &R::run, "Number of the new run."), field("shards", &R::shards),
+                      field("cells", &R::cells), field("moved", &R::moved, "Files that were moved."),
+                      field("copied", &R::copied, "Files that were copied to another file system.")};
+}
+
+struct ExportDocument {
+    std::size_t chunks = 0, cells = 0;
+    double core_seconds = 0, longest = 0;
+    unsigned minutes = 0, megabytes = 0;
+    std::size_t estimated = 0;
+};
+constexpr auto fields(const ExportDocument*) {
+    using R = ExportDocument;
+    return std::tuple{field("chunks", &R::chunks), field("cells", &R::cells),
+                      field("core-seconds", &R::core_seconds, "Expected time of all cells on one core."),
+                      field("longest-seconds", &R::longest, "Expected time of the longest chunk."),
+                      field("minutes", &R::minutes, "Time limit of a chunk."),
+                      field("megabytes", &R::megabytes, "Memory of a chunk."),
+                      field("estimated-units", &R::estimated, "Units whose time is estimated from the sizes of files.")};
+}
+
 struct RunsDocument {
     std::vector<ListedRun> runs;
 };

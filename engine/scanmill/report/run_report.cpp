@@ -77,6 +77,7 @@ CellRecord cell_record(const RunGraph& graph, const RunCell& cell, const CellRep
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
+    record.place = cell.place;
     for (std::size_t output = 0; output < report.outputs.size(); ++output)
         record.outputs.push_back(output_record(cell.outputs[output], report.outputs[output]));
     return record;

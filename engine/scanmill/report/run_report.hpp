@@ -145,6 +145,8 @@ struct CellRecord {
     std::vector<OutputRecord> outputs;
     std::vector<std::string> doubts;
     std::vector<CostRecord> costs;
+    std::size_t place = 0;
+    std::string machine{};
 };
 constexpr auto fields(const CellRecord*) {
     using R = CellRecord;
@@ -158,7 +160,10 @@ constexpr auto fields(const CellRecord*) {
         field("steps", &R::nodes, "Numbers of the cell's steps."),
         field("outputs", &R::outputs),
         field("doubts", &R::doubts).optional(),
-        field("costs", &R::costs, "One entry per pass in which all steps of the cell ran.").optional()};
+        field("costs", &R::costs, "One entry per pass in which all steps of the cell ran.").optional(),
+        field("place", &R::place, "In runs of shards: the cell's place among all cells of the batch, from 0.").optional(),
+        field("machine", &R::machine, "The machine of the cell, in a run that was merged from several machines.")
+            .optional()};
 }
 
 struct RunStart {
@@ -169,6 +174,8 @@ struct RunStart {
     std::string version, machine, libraries;
     Texts gate;
     unsigned repeats = 1;
+    std::string folder{};
+    std::string shard{}, key_of_cells{};
 };
 constexpr auto fields(const RunStart*) {
     using R = RunStart;
@@ -182,7 +189,10 @@ constexpr auto fields(const RunStart*) {
                       field("machine", &R::machine),
                       field("libraries", &R::libraries),
                       field("gate", &R::gate, "Rules of the batch's gate by metric.").optional(),
-                      field("repeats", &R::repeats, "Number of times that costs are measured.")};
+                      field("repeats", &R::repeats, "Number of times that costs are measured."),
+                      field("folder", &R::folder, "Absolute path of the output folder.").optional(),
+                      field("shard", &R::shard, "The part of the batch's cells, as 3/7; absent: all of them.").optional(),
+                      field("key-of-cells", &R::key_of_cells, "Equal for shards of one batch.").optional()};
 }
 
 struct RunSummary {

@@ -161,6 +161,9 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
     start.libraries = libraries_text();
     for (const GateRule& rule : task.gate.rules) start.gate.emplace_back(rule.metric, rule.text);
     start.repeats = task.gate.repeats;
+    start.folder = task.graph.output_folder.string();
+    start.shard = task.shard;
+    start.key_of_cells = task.key_of_cells;
     Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn, !cache_);
     on_start({jobs, run_settings.threads, recorder.run()});
     std::vector<RunObserver*> all = observers;
