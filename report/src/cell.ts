@@ -25,7 +25,7 @@ export function cellDetails(report: Report, cell: Cell, views: HTMLElement | nul
     return element("div", { class: "cell" },
         texts.findings(cell),
         cell.outcome === "failed" && part("End of the log", texts.log(cell)),
-        cell.inspection && part("Inspection", inspectionDetails(cell.inspection, cell.histogram !== null)),
+        cell.inspection && part("Inspection", inspectionDetails(cell.inspection)),
         part("Changes", changes.length > 0 && changeTable(changes, "Changes since the accepted run")),
         part("Pictures", ...pictures(report, cell, onPaper)),
         part("Deviations", ...deviations(report, cell)),

@@ -107,9 +107,8 @@ export interface Inspection {
     tolerance: [number, number];
     /// Of all counted points, over the range of the heat map's colours.
     histogram: Histogram | null;
-    /// What the workflow expects of the step: name of the metric and text, as ["in-tolerance", "99 % to 100 %"]. Empty:
-    /// the workflow sets no limit, so that a passed cell says nothing about the part.
-    expected: [string, string][];
+    /// What the workflow expects of the step. Empty: it sets no limit, so that a passed cell says nothing about the part.
+    expected: Limit[];
     columns: { name: string; help: string }[];
     /// The whole nominal first, then its parts by number. One text per column; empty: a part without points.
     rows: { part: string; texts: string[] }[];
@@ -117,6 +116,15 @@ export interface Inspection {
     labels: { deviation: string; value: number; position: [string, string, string] }[];
     /// The step's other numbers, such as alignment, chord error and points that do not count.
     facts: { name: string; text: string; help: string }[];
+}
+
+/// A condition on a metric or property: { name: "in-tolerance", limit: "at least 99 %", value: "82.02 %", met: false }.
+export interface Limit {
+    name: string;
+    limit: string;
+    /// Empty: the step has no such number.
+    value: string;
+    met: boolean;
 }
 
 /// The data of inspection sheets: one page per part and, for several parts, a first page with the verdicts.

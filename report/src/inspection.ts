@@ -1,38 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// What the inspection of a part found: limits, numbers of the nominal and its parts, labels, facts.
 
-import type { Inspection } from "./data.ts";
+import type { Inspection, Limit } from "./data.ts";
 import { deviationChart } from "./deviation_chart.ts";
 import { element, spoken } from "./element.ts";
 import type { Child } from "./element.ts";
 import * as format from "./format.ts";
-import { columnOf, numberIn, quantityCell, withMinus } from "./quantity.ts";
+import { columnOf, quantityCell, withMinus } from "./quantity.ts";
 
 export type Row = Inspection["rows"][number];
-
-/// Metrics that are shares of the points, so that 100 % is no limit from above.
-const shares = ["in-tolerance", "above", "below"];
 
 export function toleranceText(inspection: Inspection): string {
     const [low, high] = inspection.tolerance;
     return `${format.signed(low)} to ${format.signed(high)}${inspection.unit && ` ${inspection.unit}`}`;
 }
 
-/// The text of a metric: of the whole nominal, or of a part as in `rms@2`. Undefined if it is not in the table or the facts.
+/// The text of a metric of the whole nominal. Undefined if it is not in the table.
 export function found(inspection: Inspection, metric: string): string | undefined {
-    const [name = "", number = "1"] = metric.split("@");
-    const column = inspection.columns.findIndex((one) => one.name === name);
-    const text = inspection.rows[Number(number) - 1]?.texts[column];
-    return text || inspection.facts.find((fact) => fact.name === metric)?.text || undefined;
-}
-
-/// `at least 99 %` for a share that is expected from 99 % to 100 %; other texts stay as they are.
-export function limitText([metric, text]: [string, string]): string {
-    if (!shares.includes(metric.split("@")[0] ?? "")) return unbroken(withMinus(text));
-    const [, low, high] = /^(\S+ ?%) to (\S+ ?%)$/.exec(text) ?? [];
-    if (low !== undefined && numberIn(high ?? "") === 100) return `at least ${unbroken(low)}`;
-    if (high !== undefined && numberIn(low ?? "") === 0) return `at most ${unbroken(high)}`;
-    return unbroken(text);
+    return inspection.rows[0]?.texts[inspection.columns.findIndex((one) => one.name === metric)] || undefined;
 }
 
 /// No line break between a number and its unit.
@@ -45,13 +30,19 @@ export function nameOf(metric: string): string {
     return name.replaceAll("-", " ") + (number === undefined ? "" : ` of part ${number}`);
 }
 
-/// A sentence per limit: `In tolerance 99.7 %, at least 99 % expected.`
+/// `in tolerance at least 99 %`
+export function limitText(limit: Limit): string {
+    return `${nameOf(limit.name)} ${unbroken(withMinus(limit.limit))}`;
+}
+
+/// A sentence per limit: `In tolerance 82.02 %; expected: at least 99 %.` With several, a symbol marks those that are not met.
 export function limitSentences(inspection: Inspection): string[] {
     if (inspection.expected.length === 0) return ["The workflow sets no limit for this part."];
+    const marks = inspection.expected.length > 1;
     return inspection.expected.map((limit) => {
-        const text = found(inspection, limit[0]);
-        const name = nameOf(limit[0]);
-        return `${name.charAt(0).toUpperCase()}${name.slice(1)}${text === undefined ? ":" : ` ${unbroken(withMinus(text))},`} ${limitText(limit)} expected.`;
+        const name = nameOf(limit.name);
+        const value = limit.value === "" ? "" : ` ${unbroken(withMinus(limit.value))}`;
+        return `${marks ? (limit.met ? "✓ " : "✕ ") : ""}${name.charAt(0).toUpperCase()}${name.slice(1)}${value}; expected: ${unbroken(withMinus(limit.limit))}.`;
     });
 }
 
@@ -104,9 +95,9 @@ export function wholeList(inspection: Inspection, elsewhere: number[]): HTMLElem
         element("div", null, element("dt", null, metricName(column)), element("dd", null, withMinus(texts[index] || "–")))));
 }
 
-/// The inspection in the details of a cell. `hasHistogram`: the histogram is shown elsewhere.
-export function inspectionDetails(inspection: Inspection, hasHistogram: boolean): Child[] {
-    const chart = !hasHistogram && inspection.histogram !== null && deviationChart(inspection.histogram, inspection.unit);
+/// The inspection in the details of a cell.
+export function inspectionDetails(inspection: Inspection): Child[] {
+    const chart = inspection.histogram !== null && deviationChart(inspection.histogram, inspection.unit);
     const labels = labelTable(inspection);
     return [
         element("div", { class: "inspection" },

@@ -95,9 +95,9 @@ export class Report {
         return key === undefined ? undefined : this.data.images[key];
     }
 
-    /// The scale of the colours of all deviations of a scan; null if no cell has deviations.
+    /// The scale of the colours of the cell's deviations, or else of the scan's other cells; null if none has deviations.
     deviationScale(cell: Cell): ColourScale | null {
-        const cells = this.variantsOf(cell);
+        const cells = [cell, ...this.variantsOf(cell).filter((other) => other !== cell)];
         const histogram = cells.map((other) => other.histogram).find((one): one is Histogram => one !== null);
         if (histogram) return scaleOf(histogram);
         const meshes = cells.map((other) => (other.mesh ? this.data.meshes[other.mesh] : undefined));

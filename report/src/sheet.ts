@@ -32,7 +32,7 @@ function build(data: SheetData): void {
         element("main", null,
             parts.length > 1 && cover(data, parts),
             parts.length === 0 && element("article", { class: "sheet" }, element("p", null, "The run has no parts."), data.notes.map((note) => element("p", null, note))),
-            pages(data, parts.filter(({ sheet }) => isOne || sheet.inspection !== null), parts.length)));
+            pages(data, parts, parts.length)));
     // The browser looked for the address before its element was made.
     if (location.hash) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 }

@@ -5,7 +5,7 @@ import type { Sheet, SheetData } from "./data.ts";
 import { element } from "./element.ts";
 import type { Child } from "./element.ts";
 import * as format from "./format.ts";
-import { found, limitText, nameOf } from "./inspection.ts";
+import { found, limitText } from "./inspection.ts";
 import { scanName } from "./names.ts";
 import { columnOf, quantityCell } from "./quantity.ts";
 import type { Column } from "./quantity.ts";
@@ -57,7 +57,7 @@ function row({ sheet, number }: Numbered, index: number, columns: Column[], with
 
 function expectations(sheet: Sheet): Child {
     const expected = sheet.inspection?.expected ?? [];
-    return expected.length === 0 ? element("span", { class: "quiet" }, "no limit") : expected.map((limit) => `${nameOf(limit[0])} ${limitText(limit)}`).join("; ");
+    return expected.length === 0 ? element("span", { class: "quiet" }, "no limit") : expected.map(limitText).join("; ");
 }
 
 function why(sheet: Sheet): Child {

@@ -6,7 +6,7 @@ import { deviationChart } from "./deviation_chart.ts";
 import { element } from "./element.ts";
 import type { Child } from "./element.ts";
 import * as format from "./format.ts";
-import { factList, found, labelKey, labelTable, limitSentences, partTable, toleranceText, wholeList } from "./inspection.ts";
+import { factList, labelKey, labelTable, limitSentences, partTable, toleranceText, wholeList } from "./inspection.ts";
 import type { Row } from "./inspection.ts";
 import { numberIn } from "./quantity.ts";
 import { splitPath } from "./report.ts";
@@ -49,18 +49,15 @@ export function partPage(data: SheetData, part: Numbered, count: number, room: R
 function verdict(sheet: Sheet, room: Room): HTMLElement {
     const { inspection } = sheet;
     const result = resultOf(sheet);
-    // The sentence of a limit says the same with both numbers.
-    const isSaid = (reason: string) => {
-        const [, metric = "", text] = /^expected (\S+) in .*, found (.+)$/.exec(reason) ?? [];
-        return text !== undefined && inspection !== null && inspection.expected.some(([name]) => name === metric) && found(inspection, metric) === text;
-    };
-    const reasons = sheet.reasons.filter((reason) => !isSaid(reason));
-    const hasError = sheet.error !== "" && !sheet.reasons.some((reason) => sheet.error.includes(reason) && isSaid(reason));
+    // The sentences of the limits say the same, with both numbers.
+    const isSaid = inspection !== null && inspection.expected.some((limit) => !limit.met);
+    const reasons = sheet.reasons.filter((reason) => !(isSaid && reason.startsWith("expected ")));
+    const hasError = sheet.error !== "" && !isSaid;
     const known = sheet.known;
     return element("section", { class: `verdict ${result}`, "aria-label": "Verdict" },
         element("p", { class: "verdict-word" }, resultMark(result)),
         element("div", null,
-            inspection ? element("p", null, limitSentences(inspection).join(" ")) : element("p", null, "No step inspected this part."),
+            inspection ? limitSentences(inspection).map((sentence) => element("p", null, sentence)) : element("p", null, "No step inspected this part."),
             inspection && element("p", null, `Tolerance ${toleranceText(inspection)}; positive is outside the nominal.`),
             reasons.slice(0, room.notes).map((reason) => element("p", null, shortened(reason, room.characters))),
             reasons.length > room.notes && element("p", { class: "quiet" }, `${format.counted(reasons.length - room.notes, "more reason")}.`),

@@ -17,7 +17,7 @@ export function resultOf(sheet: Sheet): Result {
     if (sheet.verdict === "failed" || sheet.outcome === "failed") return "failed";
     if (sheet.verdict === "missing" || sheet.inspection === null) return "missing";
     if (sheet.verdict === "regressed") return "regressed";
-    if (sheet.verdict === "doubtful" || sheet.outcome === "doubtful") return "doubtful";
+    if (sheet.verdict === "doubtful" || (sheet.outcome === "doubtful" && !sheet.known)) return "doubtful";
     return sheet.inspection.expected.length === 0 ? "unlimited" : "passed";
 }
 

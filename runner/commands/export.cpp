@@ -10,6 +10,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "output/error_output.hpp"
 #include "output/run_table.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
@@ -220,9 +221,9 @@ int export_batch(const Options& options) {
     const fs::path result = options.result.empty() ? options.folder / "result" : options.result;
     std::error_code absent;
     if (!options.records.empty())
-        records = RunRecords::read(options.records / records_file);
+        records.emplace(RunRecords::read(options.records / records_file));
     else if (fs::exists(result / records_file, absent))
-        records = RunRecords::read(result / records_file);
+        records.emplace(RunRecords::read(result / records_file));
     const std::vector<UnitCost> costs = unit_costs(checked, records ? &*records : nullptr);
     const double seconds = 60 * options.minutes * options.cores;
     const std::vector<Chunk> chunks = chunks_of(checked, costs, seconds);

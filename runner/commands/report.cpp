@@ -121,7 +121,7 @@ int report(const Options& options) {
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
     if (!options.sheet.empty()) {
         write_sheet_file(options.html, which, options.sheet);
-        return done;
+        return exit_code_of(compare_recorded(which, std::nullopt, {}), options.strict);
     }
     if (!options.html.empty()) write_page_file(options.html, which, against);
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
@@ -179,7 +179,8 @@ void add_report(CLI::App& app, Action& chosen) {
                                             "Write inspected parts to the file of --html, an A4 page each, instead of "
                                             "the report: a scan, 'SCAN [VARIANT]', "
                                             "a folder of scans, or . for all parts of the run");
-    sheet->needs(html);
+    sheet->needs(html)->check(CLI::Validator(
+        [](const std::string& parts) { return parts.empty() ? "the name of the parts is empty" : std::string(); }, ""));
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");
     format->excludes(json);

@@ -50,7 +50,7 @@ export function makeInspection(part: Part): Inspection {
     }).sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
     return {
         step: "inspect", unit: "mm", tolerance, histogram: histogramOf(part),
-        expected: part.hasLimit === false ? [] : [["in-tolerance", "99 % to 100 %"]],
+        expected: part.hasLimit === false ? [] : [{ name: "in-tolerance", limit: "at least 99 %", value: rows[0]!.texts[1]!, met: Number.parseFloat(rows[0]!.texts[1]!) >= 99 }],
         columns: columns.map(([name, help]) => ({ name, help })), rows, labels,
         facts: [
             { name: "aligned", text: "yes", help: "Whether a transform was given." }, { name: "alignment-rms", text: "0.01233 mm", help: "Distance that the alignment left, from the transform." },

@@ -143,7 +143,7 @@ describe("the page of a part", () => {
     browserTest("Part_Failed_SaysTheLimitAndWhatWasFound", "sheet-one", {}, async (page) => {
         const text = await page.locator(".verdict").innerText();
         assert.match(text, /✕ Failed/);
-        assert.match(text, /In tolerance 91\.7\s%, at least 99\s% expected\./);
+        assert.match(text, /In tolerance 91\.7\s%; expected: at least 99\s%\./);
         assert.match(text, /Tolerance −0\.05 to \+0\.1 mm/);
         assert.doesNotMatch(text, /expected in-tolerance in|error:/);
         assert.match(await page.title(), /✕ brackets: inspection, failed/);
@@ -222,7 +222,7 @@ describe("the inspection of a cell", () => {
     browserTest("Cell_Inspected_ShowsLimitsPartsLabelsAndFacts", "inspected", { hash: "#cell-1" }, async (page) => {
         const section = page.locator("dialog section.part", { has: page.locator("h3", { hasText: /^Inspection$/ }) });
         const { inspection } = readData("inspected").cells[0];
-        assert.match(await section.innerText(), /Tolerance −0\.05 to \+0\.1 mm\. In tolerance 92\.09\s%, at least 99\s% expected\./);
+        assert.match(await section.innerText(), /Tolerance −0\.05 to \+0\.1 mm\. In tolerance 92\.09\s%; expected: at least 99\s%\./);
         assert.equal(await section.locator(".parts tbody tr").count(), 41);
         assert.equal(await section.locator(".parts thead th").count(), 1 + inspection.columns.length);
         assert.equal(await section.locator(".parts thead abbr").nth(1).getAttribute("title"), inspection.columns[1].help);

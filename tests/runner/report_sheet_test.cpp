@@ -56,7 +56,7 @@ protected:
     }
     nlohmann::json data(const std::string& parts) {
         const ProgramResult written = sheet_of(parts);
-        EXPECT_EQ(written.exit_code, 0) << written.err;
+        EXPECT_EQ(written.exit_code, exit_code_) << written.err;
         page_ = content_of(folder_ / "sheet.html");
         const std::string mark = "<script type=\"application/json\" id=\"data\">";
         const std::size_t begin = page_.find(mark) + mark.size();
@@ -65,10 +65,12 @@ protected:
 
     TemporaryFolder folder_;
     std::string page_;
+    int exit_code_ = 0;  // expected
 };
 
 TEST_F(ReportSheet, EveryPartHasItsNumbers_PicturesAndWhatIsExpected) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "-o", "out", "-q"}).exit_code, 1) << "the long part fails";
+    exit_code_ = 1;
     const nlohmann::json all = data(".");
     EXPECT_THAT(page_, testing::Not(HasSubstr("ird'<script>"))) << "escaped";
     ASSERT_THAT(all["sheets"], SizeIs(2));
@@ -79,7 +81,10 @@ TEST_F(ReportSheet, EveryPartHasItsNumbers_PicturesAndWhatIsExpected) {
         const nlohmann::json& inspection = sheet["inspection"];
         EXPECT_THAT(inspection["tolerance"], ElementsAre(-0.1, 0.1));
         EXPECT_EQ(inspection["unit"], "mm");
-        EXPECT_THAT(inspection["expected"][0], ElementsAre("in-tolerance", "in [99 %, 100 %]"));
+        EXPECT_EQ(inspection["expected"][0]["name"], "in-tolerance");
+        EXPECT_EQ(inspection["expected"][0]["limit"], "at least 99 %");
+        EXPECT_EQ(inspection["expected"][0]["value"], inspection["rows"][0]["texts"][0]);
+        EXPECT_EQ(inspection["expected"][0]["met"], is_good);
         // The same numbers as in the file that the workflow writes.
         const std::string stem = fs::path(sheet["scan"].get<std::string>()).stem();
         const fs::path file = folder_ / (is_good ? "out" : "out/failed") / "parts" / (stem + "-inspection.json");
@@ -101,6 +106,58 @@ TEST_F(ReportSheet, EveryPartHasItsNumbers_PicturesAndWhatIsExpected) {
     EXPECT_THAT(data("parts/good.ply")["sheets"], SizeIs(1));
     EXPECT_THAT(data("parts/good.ply [default]")["sheets"], SizeIs(1));
     EXPECT_THAT(data("parts/")["sheets"], SizeIs(2));
+    EXPECT_THAT(data("./parts")["sheets"], SizeIs(2));
+    EXPECT_THAT(data((folder_ / "parts").string())["sheets"], SizeIs(2)) << "scans are named as they are recorded";
+}
+
+TEST_F(ReportSheet, FromAnotherFolder_PicturesAreFound) {
+    scanmill({"batch", "b.yaml", "-o", "out", "-q"});
+    fs::create_directories(folder_ / "elsewhere");
+    const ProgramResult written = scanmill_program({"report", "../out", "--html", "page.html"},
+                                                   {.folder = folder_ / "elsewhere", .cache = folder_ / "home"});
+    EXPECT_THAT(written.err, testing::Not(HasSubstr("missing")));
+    const std::string page = content_of(folder_ / "elsewhere/page.html");
+    EXPECT_THAT(page, HasSubstr("\"truth\":"));
+}
+
+TEST_F(ReportSheet, SeveralLimits_EachHaveTheirValueAndWhetherItIsMet) {
+    folder_.write("own.yaml",
+                  "scanmill: 1\nname: own\ninputs: {scan: points, nominal: mesh}\nsteps:\n"
+                  "  - id: loose\n    inspect: {tolerance: [-1 mm, 1 mm]}\n    in: {scan: scan, nominal: nominal}\n"
+                  "  - id: fine\n    inspect: {tolerance: [-0.1 mm, 0.1 mm]}\n    in: {scan: scan, nominal: nominal}\n"
+                  "    expect: {rms: '< 0.2 mm', max: [0 mm, 0.01 mm], mean-above: '> 1 mm'}\n"
+                  "outputs: {\"{scan}.json\": fine}\n");
+    scanmill({"run", "own.yaml", "parts/we ird'<script>.ply", "--unit", "mm", "--in", "nominal=block.off", "-o", "out", "-q"});
+    exit_code_ = 1;
+    const nlohmann::json inspection = data(".")["sheets"][0]["inspection"];
+    EXPECT_EQ(inspection["step"], "fine") << "the step that failed";
+    std::map<std::string, nlohmann::json> limits;
+    for (const nlohmann::json& limit : inspection["expected"]) limits[limit["name"]] = limit;
+    EXPECT_EQ(limits.at("rms")["limit"], "below 0.2 mm");
+    EXPECT_TRUE(limits.at("rms")["met"]);
+    EXPECT_EQ(limits.at("max")["limit"], "0 mm to 0.01 mm");
+    EXPECT_EQ(limits.at("max")["value"], "0.15 mm");
+    EXPECT_FALSE(limits.at("max")["met"]);
+    EXPECT_EQ(limits.at("mean-above")["limit"], "above 1 mm");
+    EXPECT_THAT(limits.at("mean-above")["value"].get<std::string>(), testing::EndsWith(" mm"));
+    EXPECT_FALSE(limits.at("mean-above")["met"]);
+}
+
+TEST_F(ReportSheet, PartsThatAreMissingOrNeverInspected_AreSheetsToo) {
+    scanmill({"batch", "b.yaml", "-o", "out", "-q"});
+    scanmill({"report", "out", "--accept", "--who", "Ann", "--why", "x"});
+    fs::remove(folder_ / "parts/good.ply");
+    scanmill({"batch", "b.yaml", "-o", "out", "-q"});
+    exit_code_ = 4;
+    std::map<std::string, std::string> verdicts;
+    for (const nlohmann::json all = data("."); const nlohmann::json& sheet : all["sheets"])
+        verdicts[sheet["scan"]] = sheet["verdict"];
+    EXPECT_EQ(verdicts["parts/good.ply"], "missing");
+    fs::remove(folder_ / "block.off");
+    scanmill({"batch", "b.yaml", "-o", "none", "-q"});
+    const ProgramResult written = scanmill({"report", "none", "--sheet", ".", "--html", "none.html"});
+    EXPECT_EQ(written.exit_code, 1) << written.err;
+    EXPECT_THAT(written.out, HasSubstr("the sheet of 1 part is none.html"));
 }
 
 TEST_F(ReportSheet, WithoutPicturesOfTheWorkflow_TheDeviationsAreDrawn) {
@@ -123,6 +180,7 @@ TEST_F(ReportSheet, WithoutPicturesOfTheWorkflow_TheDeviationsAreDrawn) {
 TEST_F(ReportSheet, ABrokenScan_HasASheetWithTheReason) {
     folder_.write("parts/broken.ply", content_of(folder_ / "made/scan.ply").substr(0, 2000));
     scanmill({"batch", "b.yaml", "-o", "out", "-q"});
+    exit_code_ = 1;
     const nlohmann::json all = data(".");
     ASSERT_THAT(all["sheets"], SizeIs(3));
     std::map<std::string, nlohmann::json> sheets;

@@ -34,7 +34,7 @@ protected:
         folder_.write("all.yaml",
                       "scanmill: 1\nname: all\ninputs: {views: [points]}\nsteps:\n  - merge:\n"
                       "outputs: {'together.ply': merge}\n");
-        write_batch("genus: exact");
+        write_batch("points: exact");
     }
     void write_batch(const std::string& gate) {
         folder_.write("b.yaml", "scanmill: 1\nbatch: b\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"

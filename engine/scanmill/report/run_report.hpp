@@ -174,7 +174,7 @@ struct RunStart {
     std::string version, machine, libraries;
     Texts gate;
     unsigned repeats = 1;
-    std::string folder{};
+    std::string folder{}, working_folder{};
     std::string shard{}, key_of_cells{};
 };
 constexpr auto fields(const RunStart*) {
@@ -191,6 +191,7 @@ constexpr auto fields(const RunStart*) {
                       field("gate", &R::gate, "Rules of the batch's gate by metric.").optional(),
                       field("repeats", &R::repeats, "Number of times that costs are measured."),
                       field("folder", &R::folder, "Absolute path of the output folder.").optional(),
+                      field("working-folder", &R::working_folder, "The folder from which relative paths count.").optional(),
                       field("shard", &R::shard, "The part of the batch's cells, as 3/7; absent: all of them.").optional(),
                       field("key-of-cells", &R::key_of_cells, "Equal for shards of one batch.").optional()};
 }

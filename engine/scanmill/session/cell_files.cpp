@@ -59,15 +59,19 @@ static LengthUnit declared_unit(const StepRecord& read) {
 CellFile CellFiles::scan() const {
     for (const std::size_t node : cell_.nodes)
         if (const StepRecord* read = step(node); read && read->filter.empty())
-            return {read->file, declared_unit(*read)};
+            return {from_base(read->file), declared_unit(*read)};
     return {};
+}
+
+std::string CellFiles::from_base(const std::string& file) const {
+    return base_.empty() || fs::path(file).is_absolute() ? file : (base_ / file).lexically_normal().string();
 }
 
 CellFile CellFiles::file_of(const StepRecord& step, const std::string& port) const {
     const auto input = std::ranges::find(step.inputs, port, &InputRecord::port);
     if (input == step.inputs.end()) return {};
     if (const StepRecord* from = this->step(input->step); from && from->filter.empty())
-        return {from->file, declared_unit(*from)};
+        return {from_base(from->file), declared_unit(*from)};
     for (const OutputRecord& output : cell_.outputs)
         if (output.step == input->step && output.port == input->output && is_written(output))
             return {path_of(output), output.properties.unit};
@@ -94,12 +98,17 @@ const OutputRecord* CellFiles::mesh() const {
 }
 
 InspectionStep CellFiles::inspection() const {
+    InspectionStep best;
+    const auto rank = [](const StepRecord& step) {
+        return step.outcome == Outcome::failed ? 2 : step.expected.empty() ? 0 : 1;
+    };
     for (const std::size_t node : cell_.nodes) {
         const StepRecord* step = this->step(node);
         const FilterSpec* filter = step ? library_.find(step->filter) : nullptr;
-        if (filter && filter->inspects) return {step, &*filter->inspects, filter};
+        if (filter && filter->inspects && (!best || rank(*step) > rank(*best.step)))
+            best = {step, &*filter->inspects, filter};
     }
-    return {};
+    return best;
 }
 
 const OutputRecord* CellFiles::deviation_map(const InspectionStep& inspection) const {

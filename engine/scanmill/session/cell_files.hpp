@@ -2,6 +2,7 @@
 #pragma once
 /// What the records of a cell say about its files: which is the scan, the truth, the result, and the map of deviations.
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -51,10 +52,13 @@ struct InspectionStep {
 /// Reads the wiring of one cell. Refers to its arguments.
 class CellFiles {
 public:
-    CellFiles(const CellRecord& cell, const StepsByNode& steps, const FilterLibrary& library)
+    /// `base`: the working folder of the run, from which the paths of its scans count; empty: that of this process.
+    CellFiles(const CellRecord& cell, const StepsByNode& steps, const FilterLibrary& library,
+              const std::string& base = {})
         : cell_(cell),
           steps_(steps),
-          library_(library) {}
+          library_(library),
+          base_(base) {}
 
     /// The first file that the cell reads.
     CellFile scan() const;
@@ -63,7 +67,8 @@ public:
     CellFile truth() const;
     /// The first output that is a mesh and was written, also below `failed/`.
     const OutputRecord* mesh() const;
-    /// The first step that inspects a part.
+    /// The step that inspects a part: of several, the first that failed, or else the first of which the workflow expects
+    /// something, or else the first.
     InspectionStep inspection() const;
     /// The written output with the deviations that this step found, the best to look at; nullptr if none was written.
     const OutputRecord* deviation_map(const InspectionStep& inspection) const;
@@ -76,7 +81,10 @@ private:
 
     const CellRecord& cell_;
     const StepsByNode& steps_;
+    std::string from_base(const std::string& file) const;
+
     const FilterLibrary& library_;
+    const std::filesystem::path base_;
 };
 
 /// Whether the output was written, also below `failed/`.

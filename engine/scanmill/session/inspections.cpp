@@ -9,6 +9,19 @@ namespace scanmill {
 
 namespace {
 
+/// "at least 99 %" for "in [99 %, 100 %]", "below 0.1 mm" for "< 0.1 mm"; other texts stay.
+std::string limit_text(const std::string& limits, Unit unit) {
+    if (limits.starts_with("< ")) return "below " + limits.substr(2);
+    if (limits.starts_with("> ")) return "above " + limits.substr(2);
+    if (!limits.starts_with("in [") || !limits.ends_with(']')) return limits;
+    const std::string ends = limits.substr(4, limits.size() - 5);
+    const std::size_t comma = ends.find(", ");
+    const std::string low = ends.substr(0, comma), high = comma == std::string::npos ? "" : ends.substr(comma + 2);
+    if (unit == Unit::ratio && (high == "100 %" || high == "1")) return "at least " + low;
+    if (unit == Unit::ratio && (low == "0 %" || low == "0")) return "at most " + high;
+    return low + " to " + high;
+}
+
 /// NAME of the whole nominal or of the first item, NAME@2 and so on of the others.
 std::string numbered_name(const std::string& metric, std::size_t number) {
     return number == 1 ? metric : fmt::format("{}@{}", metric, number);
@@ -27,7 +40,7 @@ public:
         page.unit = symbol(metrics_.unit);
         page.tolerance = inspection_.numbers(inspects_.tolerance);
         page.histogram = histogram();
-        for (const auto& [name, limits] : inspection_.step->expected) page.expected.push_back({name, limits});
+        for (const auto& [name, limits] : inspection_.step->expected) page.expected.push_back(limit(name, limits));
         for (const std::string& name : inspects_.numbers)
             page.columns.push_back({name, inspection_.filter->metric(name)->help});
         for (std::size_t part = 1; has_part(part); ++part) page.rows.push_back(row(part));
@@ -46,6 +59,19 @@ private:
     std::string text(const std::string& metric, std::size_t number) const {
         const Metric* found = find(metric, number);
         return found ? display(*found, metrics_.unit) : "";
+    }
+
+    PageLimit limit(const std::string& name, const std::string& limits) const {
+        const StepRecord& step = *inspection_.step;
+        const Metric* found = metrics_.find(name);
+        const Metric* value = found ? found : step.properties.find(name);
+        // The error of the step names every condition that does not hold.
+        bool is_met = true;
+        for (const char* between : {" in ", " < ", " > ", ": "})
+            if (step.failure.error.find("expected " + name + between) != std::string::npos) is_met = false;
+        const MetricSpec* spec = inspection_.filter->metric(name);
+        return {name, limit_text(limits, spec ? spec->unit : Unit::number),
+                value ? display(*value, found ? metrics_.unit : step.properties.unit) : "", is_met};
     }
 
     bool has_part(std::size_t part) const {

@@ -119,6 +119,17 @@ constexpr auto fields(const PagePart*) {
     return std::tuple{field("part", &PagePart::part), field("texts", &PagePart::texts)};
 }
 
+struct PageLimit {
+    std::string name, limit;
+    std::string value;  ///< empty: the step has no such number
+    bool met = true;
+};
+constexpr auto fields(const PageLimit*) {
+    using R = PageLimit;
+    return std::tuple{field("name", &R::name), field("limit", &R::limit), field("value", &R::value),
+                      field("met", &R::met)};
+}
+
 struct PageLabel {
     std::string deviation;
     double value = 0;
@@ -141,7 +152,7 @@ struct PageInspection {
     std::string step, unit;
     std::array<double, 2> tolerance{};
     std::optional<PageHistogram> histogram;
-    std::vector<std::array<std::string, 2>> expected;
+    std::vector<PageLimit> expected;
     std::vector<PageColumn> columns;
     std::vector<PagePart> rows;
     std::vector<PageLabel> labels;

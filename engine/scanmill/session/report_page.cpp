@@ -219,7 +219,10 @@ private:
     void add_record(PageCell& cell, const CellRecord& record) const {
         cell.error = record.failure.error;
         cell.inspection = page_inspection(CellFiles(record, steps_, library_).inspection());
-        if (cell.inspection) cell.histogram = cell.inspection->histogram;
+        if (cell.inspection) {
+            cell.histogram = cell.inspection->histogram;
+            cell.deviation_unit = cell.inspection->unit;
+        }
         for (const std::size_t node : record.nodes) {
             const auto found = steps_.find(node);
             if (found == steps_.end()) continue;
@@ -276,7 +279,8 @@ private:
 
     std::size_t wish(PreviewWish wish, bool is_of_tonight) {
         const std::string key =
-            fmt::format("{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file, wish.camera_file);
+            fmt::format("{}\n{}\n{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file, wish.camera_file,
+                        symbol(wish.unit), wish.kind ? name_of(*wish.kind) : "");
         const auto [found, is_new] = wish_of_key_.emplace(key, wishes_.size());
         if (is_new) {
             wishes_.push_back(std::move(wish));
@@ -287,8 +291,9 @@ private:
     }
 
     /// The wish for the output with the deviations of an inspected part, or else for the result.
-    std::optional<PreviewWish> wish_for(const CellRecord& record, const StepsByNode& steps) const {
-        const CellFiles files(record, steps, library_);
+    std::optional<PreviewWish> wish_for(const CellRecord& record, const StepsByNode& steps,
+                                        const std::string& base) const {
+        const CellFiles files(record, steps, library_, base);
         const CellFile truth = files.truth();
         const InspectionStep inspection = files.inspection();
         const OutputRecord* map =
@@ -328,13 +333,13 @@ private:
             for (const CellRecord& cell : accepted->cells) before[{cell.workflow, cell.scan, cell.variant}] = &cell;
         }
         for (const auto& [id, record] : record_of_cell_) {
-            const CellFiles files(*record, steps_, library_);
+            const CellFiles files(*record, steps_, library_, run_.start.working_folder);
             const CellFile scan = files.scan(), truth = files.truth();
-            if (std::optional<PreviewWish> result = wish_for(*record, steps_))
+            if (std::optional<PreviewWish> result = wish_for(*record, steps_, run_.start.working_folder))
                 uses_[wish(*std::move(result), true)].emplace_back(id, Role::result);
             if (const auto found = before.find({record->workflow, record->scan, record->variant});
                 found != before.end())
-                if (std::optional<PreviewWish> result = wish_for(*found->second, steps_before))
+                if (std::optional<PreviewWish> result = wish_for(*found->second, steps_before, accepted->start.working_folder))
                     uses_[wish(*std::move(result), false)].emplace_back(id, Role::accepted);
             if (!scan.path.empty())
                 uses_[wish(wish_for(scan, truth.path.empty() ? scan : truth), true)].emplace_back(id, Role::scan);

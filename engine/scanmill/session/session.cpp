@@ -162,6 +162,8 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
     for (const GateRule& rule : task.gate.rules) start.gate.emplace_back(rule.metric, rule.text);
     start.repeats = task.gate.repeats;
     start.folder = task.graph.output_folder.string();
+    std::error_code unknown;
+    start.working_folder = fs::current_path(unknown).string();
     start.shard = task.shard;
     start.key_of_cells = task.key_of_cells;
     Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn, !cache_);

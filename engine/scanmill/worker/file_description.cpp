@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/graph/output_files.hpp"
@@ -58,16 +57,18 @@ Json to_json(const ParameterSet& parameters) {
 
 std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
-/// The node and all nodes upstream of it. Every node comes after its inputs.
-std::set<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
-    std::set<std::size_t> found{node};
-    std::vector<std::size_t> open{node};
-    while (!open.empty()) {
-        const std::size_t next = open.back();
-        open.pop_back();
-        for (const NodeInput& input : graph.nodes[next].inputs)
-            if (found.insert(input.node).second) open.push_back(input.node);
-    }
+/// Adds the node after all nodes upstream of it that `found` lacks.
+void add_ancestry(const RunGraph& graph, std::size_t node, std::vector<std::size_t>& found) {
+    for (const NodeInput& input : graph.nodes[node].inputs)
+        if (std::ranges::find(found, input.node) == found.end()) add_ancestry(graph, input.node, found);
+    found.push_back(node);
+}
+
+/// The node and all nodes upstream of it. Every node comes after its inputs. The order depends on the wiring alone, not
+/// on what else the graph has.
+std::vector<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
+    std::vector<std::size_t> found;
+    add_ancestry(graph, node, found);
     return found;
 }
 
@@ -88,8 +89,8 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
     for (const std::size_t each : cells) json["variants"].push_back(graph.variant(graph.cells[each]).name);
     if (const PlannedStep* step = graph.step(graph.nodes[output.node]))
         for (const PlannedExpectation& expectation : step->expectations) json["expected"].push_back(expectation.text);
-    const std::set<std::size_t> all = ancestry(graph, output.node);
-    json["doubts"] = doubts_about({output}, {all.begin(), all.end()}, graph, reports);
+    const std::vector<std::size_t> all = ancestry(graph, output.node);
+    json["doubts"] = doubts_about({output}, all, graph, reports);
     if (is_evidence) json["unmet"] = unmet_by(cells, graph, reports);
     for (const std::size_t each : all) {
         const RunNode& made = graph.nodes[each];
