@@ -125,8 +125,8 @@ Filter declaration() {
                      .range = {"range-low", "range-high"},
                      .histogram = "histogram",
                      .label = {"label", "label-x", "label-y", "label-z"},
-                     .numbers = {"in-tolerance", "above", "below", "min", "max", "mean", "rms", "standard-deviation", "p1",
-                                 "p50", "p99", "points"}});
+                     .numbers = {"in-tolerance", "above", "below", "min", "max", "mean", "rms", "standard-deviation",
+                                 "p1", "p50", "p99", "points"}});
     filter.doubts({"more than 50 % of the points are too far from the nominal to count, or have no sure sign",
                    "the nominal is inside out, or its triangles face different sides"});
     filter.run([](const Inputs& inputs, const P& params, Context& context) {

@@ -87,32 +87,32 @@ Files slurm_files(const Plan& plan) {
         "#SBATCH --mem={}M\n"
         "#SBATCH --time={}\n",
         job_name(plan), plan.cores, plan.megabytes, time_text(plan.minutes));
-    const std::string run = head +
-                            fmt::format(
-                                "#SBATCH --array=1-{}\n"
-                                "#SBATCH --output=logs/%4a.txt\n"
-                                "# One chunk per job. Exit code 1 means that scans failed, which the report shows.\n"
-                                "cd {} || exit 3\n"
-                                "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
-                                "{}\n"
-                                "code=$?\n"
-                                "[ $code -eq 1 ] && exit 0\n"
-                                "exit $code\n",
-                                plan.chunks, quoted(plan.folder.string()),
-                                batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
-    const std::string merge = head +
-                              fmt::format(
-                                  "#SBATCH --output=logs/merge.txt\n"
-                                  "# Makes one run of all chunks, and its report.\n"
-                                  "cd {} || exit 3\n"
-                                  "{}\n"
-                                  "code=$?\n"
-                                  "{} || :\n"
-                                  "exit $code\n",
-                                  quoted(plan.folder.string()), merge_command(plan), page_command(plan));
+    const std::string run =
+        head + fmt::format(
+                   "#SBATCH --array=1-{}\n"
+                   "#SBATCH --output=logs/%4a.txt\n"
+                   "# One chunk per job. Exit code 1 means that scans failed, which the report shows.\n"
+                   "cd {} || exit 3\n"
+                   "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
+                   "{}\n"
+                   "code=$?\n"
+                   "[ $code -eq 1 ] && exit 0\n"
+                   "exit $code\n",
+                   plan.chunks, quoted(plan.folder.string()),
+                   batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
+    const std::string merge = head + fmt::format(
+                                         "#SBATCH --output=logs/merge.txt\n"
+                                         "# Makes one run of all chunks, and its report.\n"
+                                         "cd {} || exit 3\n"
+                                         "{}\n"
+                                         "code=$?\n"
+                                         "{} || :\n"
+                                         "exit $code\n",
+                                         quoted(plan.folder.string()), merge_command(plan), page_command(plan));
     const std::string submit = fmt::format(
         "#!/bin/sh\n"
-        "# submit.sh [CHUNKS]: submits all chunks, or those with these numbers, as 3,17; then the merge, which waits for them.\n"
+        "# submit.sh [CHUNKS]: submits all chunks, or those with these numbers, as 3,17; then the merge, which waits "
+        "for them.\n"
         "set -e\n"
         "cd {}\n"
         "mkdir -p logs\n"
@@ -146,7 +146,8 @@ Files snakemake_files(const Plan& plan) {
     replace("THREADS", "{threads}");
     // Exit code 1: scans failed; 4: the gate tripped. The report shows both.
     const std::string code_of_chunk = " > {log} 2>&1; code=$?; [ $code -eq 1 ] && code=0; exit $code";
-    const std::string code_of_merge = " > {log} 2>&1; code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
+    const std::string code_of_merge =
+        " > {log} 2>&1; code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
     const std::string text = fmt::format(
         "# Runs the batch {0} in {1} chunks, then makes one run of them, and its report.\n"
         "#   snakemake -j 4\n"
@@ -258,8 +259,8 @@ int export_batch(const Options& options) {
         fs::create_directories(plan.folder / "logs", absent);
     }
     if (options.json) {
-        print_document(json_of(ExportDocument{chunks.size(), checked.cells(), total, longest, plan.minutes,
-                                              plan.megabytes, estimated}));
+        print_document(json_of(
+            ExportDocument{chunks.size(), checked.cells(), total, longest, plan.minutes, plan.megabytes, estimated}));
         return done;
     }
     fmt::print("{}: {} in {}, {} of one core; {} on as many machines\n", printable_line(plan.name),
@@ -272,30 +273,34 @@ int export_batch(const Options& options) {
                plan.minutes);
     if (!options.dry_run)
         fmt::print("to run it: {}\n", options.scheduler == "slurm"
-                                          ? shell_word(plan.folder / "submit.sh")
-                                          : "snakemake -s " + shell_word(plan.folder / "Snakefile") + " -j 4");
+                                          ? shell_word(options.folder / "submit.sh")
+                                          : "snakemake -s " + shell_word(options.folder / "Snakefile") + " -j 4");
     return done;
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, Action& chosen) {
-    auto [command, options] =
-        add_command<Options>(app, chosen, "export",
-                             "Writes scripts that run a batch in chunks on many machines, with Slurm or Snakemake",
-                             export_batch);
+    auto [command, options] = add_command<Options>(
+        app, chosen, "export", "Writes scripts that run a batch in chunks on many machines, with Slurm or Snakemake",
+        export_batch);
     command.add_option("SCHEDULER", options.scheduler, "slurm or snakemake")
         ->required()
         ->check(CLI::IsMember({"slurm", "snakemake"}));
     command.add_option("BATCH", options.batch, "The batch file")->required();
-    command.add_option("-o,--output", options.folder, "The folder of the scripts, chunks and their outputs")->required();
-    command.add_option("--result", options.result, "The output folder of the merged run. Default: result, in that folder");
-    command.add_option("--records", options.records,
-                       "An output folder whose records have the time and memory of earlier runs. Default: the result's");
+    command.add_option("-o,--output", options.folder, "The folder of the scripts, chunks and their outputs")
+        ->required();
+    command.add_option("--result", options.result,
+                       "The output folder of the merged run. Default: result, in that folder");
+    command.add_option(
+        "--records", options.records,
+        "An output folder whose records have the time and memory of earlier runs. Default: the result's");
     command.add_option("--minutes", options.minutes, "The time that a chunk should take, about")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    command.add_option("--cores", options.cores, "The cores of a chunk")->capture_default_str()->check(CLI::Range(1, 1024));
+    command.add_option("--cores", options.cores, "The cores of a chunk")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1024));
     command.add_option("--cache", options.cache, "A cache that all machines share. Default: each machine's own");
     command.add_option("--program", options.program, "The command that starts Scanmill on the machines")
         ->capture_default_str();

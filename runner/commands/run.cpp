@@ -25,11 +25,11 @@
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/batch/choice.hpp"
 #include "scanmill/batch/objects.hpp"
-#include "scanmill/batch/shard.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/chunks.hpp"
 #include "scanmill/session/session.hpp"
+#include "scanmill/session/shard.hpp"
 #include "scanmill/workflow/ready.hpp"
 
 namespace scanmill::runner {
@@ -478,7 +478,7 @@ int print_status(const std::filesystem::path& folder, bool json) {
             for (const std::string& number : numbers) list += (list.empty() ? "" : ",") + number;
             fmt::print("{:<8} {:>5}  {}\n", name_of(state), numbers.size(), list);
         }
-        fmt::print("{} of {} recorded, of which {} failed\n", count_text(cells, "cell is", "cells are"),
+        fmt::print("{} recorded in {}, of which {} failed\n", count_text(cells, "cell is", "cells are"),
                    count_text(states.size(), "chunk", "chunks"), failed);
     }
     return chunks.contains(ChunkState::failed) ? some_failed : done;

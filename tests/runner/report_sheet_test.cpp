@@ -127,7 +127,8 @@ TEST_F(ReportSheet, SeveralLimits_EachHaveTheirValueAndWhetherItIsMet) {
                   "  - id: fine\n    inspect: {tolerance: [-0.1 mm, 0.1 mm]}\n    in: {scan: scan, nominal: nominal}\n"
                   "    expect: {rms: '< 0.2 mm', max: [0 mm, 0.01 mm], mean-above: '> 1 mm'}\n"
                   "outputs: {\"{scan}.json\": fine}\n");
-    scanmill({"run", "own.yaml", "parts/we ird'<script>.ply", "--unit", "mm", "--in", "nominal=block.off", "-o", "out", "-q"});
+    scanmill({"run", "own.yaml", "parts/we ird'<script>.ply", "--unit", "mm", "--in", "nominal=block.off", "-o", "out",
+              "-q"});
     exit_code_ = 1;
     const nlohmann::json inspection = data(".")["sheets"][0]["inspection"];
     EXPECT_EQ(inspection["step"], "fine") << "the step that failed";

@@ -37,8 +37,10 @@ protected:
         write_batch("points: exact");
     }
     void write_batch(const std::string& gate) {
-        folder_.write("b.yaml", "scanmill: 1\nbatch: b\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"
-                                "gate: {" + gate + "}\n");
+        folder_.write("b.yaml",
+                      "scanmill: 1\nbatch: b\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"
+                      "gate: {" +
+                          gate + "}\n");
     }
     ProgramResult scanmill(const std::vector<std::string>& arguments) {
         return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});

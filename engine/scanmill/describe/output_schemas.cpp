@@ -169,7 +169,7 @@ Json runs_schema() { return document_of<RunsDocument>("scanmill runs DIR"); }
 Json runs_prune_schema() { return document_of<PrunedDocument>("scanmill runs DIR, when it prunes"); }
 Json runs_merge_schema() { return document_of<MergedDocument>("scanmill runs merge DIR…"); }
 Json export_schema() { return document_of<ExportDocument>("scanmill export"); }
-Json batch_status_schema() { return document_of<BatchStatusDocument>("scanmill batch --status"); }
+Json batch_status_schema() { return document_of<BatchStatusDocument>("scanmill batch, the states of chunks"); }
 Json runs_show_schema() { return document_of<ShownRunDocument>("scanmill runs DIR show ID"); }
 
 Json report_schema() {

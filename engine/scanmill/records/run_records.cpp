@@ -194,7 +194,8 @@ std::string RunRecords::now() const {
 std::int64_t RunRecords::begin(const RunStart& start, const std::string& started) {
     return about(database_->file, [&] {
         SQLite::Transaction transaction(database_->sqlite);
-        const RowId run = tables::insert(database_->statements, "run", RunRow{started.empty() ? now() : started, start});
+        const RowId run =
+            tables::insert(database_->statements, "run", RunRow{started.empty() ? now() : started, start});
         transaction.commit();
         return run;
     });

@@ -94,12 +94,14 @@ struct ExportDocument {
 };
 constexpr auto fields(const ExportDocument*) {
     using R = ExportDocument;
-    return std::tuple{field("chunks", &R::chunks), field("cells", &R::cells),
-                      field("core-seconds", &R::core_seconds, "Expected time of all cells on one core."),
-                      field("longest-seconds", &R::longest, "Expected time of the longest chunk."),
-                      field("minutes", &R::minutes, "Time limit of a chunk."),
-                      field("megabytes", &R::megabytes, "Memory of a chunk."),
-                      field("estimated-units", &R::estimated, "Units whose time is estimated from the sizes of files.")};
+    return std::tuple{
+        field("chunks", &R::chunks),
+        field("cells", &R::cells),
+        field("core-seconds", &R::core_seconds, "Expected time of all cells on one core."),
+        field("longest-seconds", &R::longest, "Expected time of the longest chunk."),
+        field("minutes", &R::minutes, "Time limit of a chunk."),
+        field("megabytes", &R::megabytes, "Memory of a chunk."),
+        field("estimated-units", &R::estimated, "Units whose time is estimated from the sizes of files.")};
 }
 
 struct RunsDocument {

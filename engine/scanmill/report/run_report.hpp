@@ -161,7 +161,8 @@ constexpr auto fields(const CellRecord*) {
         field("outputs", &R::outputs),
         field("doubts", &R::doubts).optional(),
         field("costs", &R::costs, "One entry per pass in which all steps of the cell ran.").optional(),
-        field("place", &R::place, "In runs of shards: the cell's place among all cells of the batch, from 0.").optional(),
+        field("place", &R::place, "In runs of shards: the cell's place among all cells of the batch, from 0.")
+            .optional(),
         field("machine", &R::machine, "The machine of the cell, in a run that was merged from several machines.")
             .optional()};
 }
@@ -179,21 +180,22 @@ struct RunStart {
 };
 constexpr auto fields(const RunStart*) {
     using R = RunStart;
-    return std::tuple{field("workflow", &R::workflow, "Name of the workflow or the batch."),
-                      field("file", &R::file, "File of the workflow or the batch."),
-                      field("arguments", &R::arguments, "Command line."),
-                      field("seed", &R::seed),
-                      field("threads", &R::threads, "Threads inside a filter."),
-                      field("jobs", &R::jobs, "Worker processes; 0: none."),
-                      field("version", &R::version, "Version of Scanmill."),
-                      field("machine", &R::machine),
-                      field("libraries", &R::libraries),
-                      field("gate", &R::gate, "Rules of the batch's gate by metric.").optional(),
-                      field("repeats", &R::repeats, "Number of times that costs are measured."),
-                      field("folder", &R::folder, "Absolute path of the output folder.").optional(),
-                      field("working-folder", &R::working_folder, "The folder from which relative paths count.").optional(),
-                      field("shard", &R::shard, "The part of the batch's cells, as 3/7; absent: all of them.").optional(),
-                      field("key-of-cells", &R::key_of_cells, "Equal for shards of one batch.").optional()};
+    return std::tuple{
+        field("workflow", &R::workflow, "Name of the workflow or the batch."),
+        field("file", &R::file, "File of the workflow or the batch."),
+        field("arguments", &R::arguments, "Command line."),
+        field("seed", &R::seed),
+        field("threads", &R::threads, "Threads inside a filter."),
+        field("jobs", &R::jobs, "Worker processes; 0: none."),
+        field("version", &R::version, "Version of Scanmill."),
+        field("machine", &R::machine),
+        field("libraries", &R::libraries),
+        field("gate", &R::gate, "Rules of the batch's gate by metric.").optional(),
+        field("repeats", &R::repeats, "Number of times that costs are measured."),
+        field("folder", &R::folder, "Absolute path of the output folder.").optional(),
+        field("working-folder", &R::working_folder, "The folder from which relative paths count.").optional(),
+        field("shard", &R::shard, "The part of the batch's cells, as 3/7; absent: all of them.").optional(),
+        field("key-of-cells", &R::key_of_cells, "Equal for shards of one batch.").optional()};
 }
 
 struct RunSummary {

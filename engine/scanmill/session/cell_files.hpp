@@ -67,8 +67,8 @@ public:
     CellFile truth() const;
     /// The first output that is a mesh and was written, also below `failed/`.
     const OutputRecord* mesh() const;
-    /// The step that inspects a part: of several, the first that failed, or else the first of which the workflow expects
-    /// something, or else the first.
+    /// The step that inspects a part: of several, the first that failed, or else the first of which the workflow
+    /// expects something, or else the first.
     InspectionStep inspection() const;
     /// The written output with the deviations that this step found, the best to look at; nullptr if none was written.
     const OutputRecord* deviation_map(const InspectionStep& inspection) const;

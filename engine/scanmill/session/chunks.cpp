@@ -66,7 +66,8 @@ std::map<std::pair<std::string, std::string>, UnitCost> recorded_costs(const Run
     std::map<std::size_t, const StepRecord*> steps;
     for (const StepRecord& step : run.steps) steps[step.node] = &step;
     std::map<std::pair<std::string, std::string>, std::set<std::size_t>> nodes;
-    for (const CellRecord& cell : run.cells) nodes[{cell.workflow, cell.scan}].insert(cell.nodes.begin(), cell.nodes.end());
+    for (const CellRecord& cell : run.cells)
+        nodes[{cell.workflow, cell.scan}].insert(cell.nodes.begin(), cell.nodes.end());
     std::map<std::pair<std::string, std::string>, UnitCost> costs;
     for (const auto& [names, all] : nodes)
         for (const std::size_t node : all)
@@ -147,7 +148,9 @@ std::vector<Chunk> chunks_of(const CheckedBatch& checked, const std::vector<Unit
     return chunks;
 }
 
-fs::path part_of_chunk(const fs::path& folder, std::size_t number) { return folder / fmt::format("parts/{:04}", number); }
+fs::path part_of_chunk(const fs::path& folder, std::size_t number) {
+    return folder / fmt::format("parts/{:04}", number);
+}
 fs::path file_of_chunk(const fs::path& folder, std::size_t number) {
     return folder / fmt::format("chunks/{:04}.json", number);
 }

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scanmill/batch/shard.hpp"
 #include "scanmill/records/run_records.hpp"
+#include "scanmill/session/shard.hpp"
 
 namespace scanmill {
 
@@ -55,7 +55,8 @@ std::vector<Chunk> chunks_of(const CheckedBatch& batch, const std::vector<UnitCo
 std::filesystem::path part_of_chunk(const std::filesystem::path& folder, std::size_t number);
 std::filesystem::path file_of_chunk(const std::filesystem::path& folder, std::size_t number);
 
-/// `failed`: the last run was interrupted or killed, or its records cannot be read. A chunk of which scans failed is done.
+/// `failed`: the last run was interrupted or killed, or its records cannot be read. A chunk of which scans failed is
+/// done.
 enum class ChunkState { waiting, running, done, failed };
 constexpr std::array<std::string_view, 4> names_of(const ChunkState*) {
     return {"waiting", "running", "done", "failed"};
@@ -67,8 +68,7 @@ struct ChunkStatus {
 };
 constexpr auto fields(const ChunkStatus*) {
     using R = ChunkStatus;
-    return std::tuple{field("chunk", &R::chunk, "Number of the chunk, from 1."),
-                      field("state", &R::state),
+    return std::tuple{field("chunk", &R::chunk, "Number of the chunk, from 1."), field("state", &R::state),
                       field("cells", &R::cells, "Recorded cells of its last run."),
                       field("failed-cells", &R::failed_cells)};
 }
@@ -76,9 +76,7 @@ constexpr auto fields(const ChunkStatus*) {
 struct BatchStatusDocument {
     std::vector<ChunkStatus> chunks;
 };
-constexpr auto fields(const BatchStatusDocument*) {
-    return std::tuple{field("chunks", &BatchStatusDocument::chunks)};
-}
+constexpr auto fields(const BatchStatusDocument*) { return std::tuple{field("chunks", &BatchStatusDocument::chunks)}; }
 
 /// The states of all chunks in the folder of an export. Throws Error if it has no chunks.
 std::vector<ChunkStatus> chunk_states(const std::filesystem::path& folder);

@@ -54,8 +54,8 @@ public:
 
     /// Adds the sheets of the named parts.
     void add_sheets(const std::string& parts) {
-        // A scan that cannot be read has no steps, but its workflow and variant inspect other parts. If no cell of the run
-        // was inspected, every cell that failed or is missing may be a part.
+        // A scan that cannot be read has no steps, but its workflow and variant inspect other parts. If no cell of the
+        // run was inspected, every cell that failed or is missing may be a part.
         std::set<std::pair<std::string, std::string>> inspecting;
         for (const CellRecord& cell : run_.cells)
             if (CellFiles(cell, steps_, library_).inspection()) inspecting.emplace(cell.workflow, cell.variant);
@@ -74,9 +74,9 @@ public:
         const std::vector<std::string> names(inspected.begin(), inspected.end());
         const std::string hint = names.empty() ? "the workflow needs a step that compares the part with its nominal"
                                                : "inspected are " + enumerated(names);
-        throw is_cell ? Error("run {} does not inspect '{}'", comparison_.run.id, parts).hint(hint)
-                      : Error("run {} has no scan '{}'{}", comparison_.run.id, parts, did_you_mean(parts, names))
-                            .hint(hint);
+        throw is_cell
+            ? Error("run {} does not inspect '{}'", comparison_.run.id, parts).hint(hint)
+            : Error("run {} has no scan '{}'{}", comparison_.run.id, parts, did_you_mean(parts, names)).hint(hint);
     }
 
     void add_pictures(FilterLibrary& library, const PreviewSettings& settings,
@@ -120,9 +120,7 @@ public:
     SheetDocument finished() { return std::move(document_); }
 
 private:
-    CellFiles files_of(const CellRecord& record) const {
-        return {record, steps_, library_, run_.start.working_folder};
-    }
+    CellFiles files_of(const CellRecord& record) const { return {record, steps_, library_, run_.start.working_folder}; }
     static std::string stem_of(const OutputRecord& output) { return fs::path(output.file).stem().string(); }
 
     /// `record`: nullptr if the cell is missing in this run.
@@ -137,8 +135,8 @@ private:
         sheet.doubts = cell.doubts;
         sheet.known = cell.known;
         if (record) add_record(sheet, *record);
-        const auto place = sheet.inspection && sheet.outcome != name_of(Outcome::failed) ? document_.sheets.size()
-                                                                                         : failed_++;
+        const auto place =
+            sheet.inspection && sheet.outcome != name_of(Outcome::failed) ? document_.sheets.size() : failed_++;
         document_.sheets.insert(document_.sheets.begin() + static_cast<std::ptrdiff_t>(place), std::move(sheet));
         record_of_sheet_.insert(record_of_sheet_.begin() + static_cast<std::ptrdiff_t>(place), record);
     }

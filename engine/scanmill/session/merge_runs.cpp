@@ -10,9 +10,9 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/batch/shard.hpp"
 #include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/output_lock.hpp"
+#include "scanmill/session/shard.hpp"
 #include "scanmill/worker/file_description.hpp"
 
 namespace scanmill {
@@ -178,8 +178,7 @@ private:
             if (sha256_of(move.from) == sha256)
                 moves_.push_back(move);
             else if (sha256_of(move.to) != sha256)
-                throw Error("the output '{}' of {} is missing or has changed", move.from.string(),
-                            name_of_shard(shard))
+                throw Error("the output '{}' of {} is missing or has changed", move.from.string(), name_of_shard(shard))
                     .hint("run the shard again");
             std::error_code ignored;
             const fs::path description = description_of(move.from);

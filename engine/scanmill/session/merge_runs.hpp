@@ -21,10 +21,10 @@ struct MergedRuns {
 /// The record is the one that a single run of the batch would have written: the same cells in the same order, with
 /// their steps, costs and machines. The start is the earliest of the shards, the duration ends with the last.
 ///
-/// Throws Error before it changes anything if a shard is missing, given twice, unfinished, or of another batch, version,
-/// seed or gate, and if an output is missing or has changed. Throws FolderInUse while a run writes into a folder. An
-/// interrupted call can be repeated: outputs that are in `target` already are not moved again.
-/// Cost: hashes the outputs.
+/// Throws Error before it changes anything if a shard is missing, given twice, unfinished, or of another batch,
+/// version, seed or gate, and if an output is missing or has changed. Throws FolderInUse while a run writes into a
+/// folder. An interrupted call can be repeated: outputs that are in `target` already are not moved again. Cost: hashes
+/// the outputs.
 MergedRuns merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& target,
                       const std::vector<std::string>& command_line, const std::function<void(std::string)>& warn);
 

@@ -278,9 +278,8 @@ private:
     enum class Role { truth, scan, result, accepted };
 
     std::size_t wish(PreviewWish wish, bool is_of_tonight) {
-        const std::string key =
-            fmt::format("{}\n{}\n{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file, wish.camera_file,
-                        symbol(wish.unit), wish.kind ? name_of(*wish.kind) : "");
+        const std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", wish.file.string(), wish.sha256, wish.truth_file,
+                                            wish.camera_file, symbol(wish.unit), wish.kind ? name_of(*wish.kind) : "");
         const auto [found, is_new] = wish_of_key_.emplace(key, wishes_.size());
         if (is_new) {
             wishes_.push_back(std::move(wish));
@@ -339,7 +338,8 @@ private:
                 uses_[wish(*std::move(result), true)].emplace_back(id, Role::result);
             if (const auto found = before.find({record->workflow, record->scan, record->variant});
                 found != before.end())
-                if (std::optional<PreviewWish> result = wish_for(*found->second, steps_before, accepted->start.working_folder))
+                if (std::optional<PreviewWish> result =
+                        wish_for(*found->second, steps_before, accepted->start.working_folder))
                     uses_[wish(*std::move(result), false)].emplace_back(id, Role::accepted);
             if (!scan.path.empty())
                 uses_[wish(wish_for(scan, truth.path.empty() ? scan : truth), true)].emplace_back(id, Role::scan);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shards divide the cells of a batch: every cell is in one shard.
-#include "scanmill/batch/shard.hpp"
+#include "scanmill/session/shard.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,14 +20,17 @@ class ShardsOfABatch : public testing::Test {
 protected:
     ShardsOfABatch() {
         for (const char* scan : {"a", "b", "c", "d", "e"}) folder_.write(std::string(scan) + ".xyz", "0 0 0\n");
-        folder_.write("w.yaml",
-                      "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n"
-                      "  - voxel-thin: {bin-size: {sweep: [1 u, 2 u]}}\noutputs: {'{scan}-{variant}.ply': voxel-thin}\n");
-        folder_.write("v.yaml",
-                      "scanmill: 1\nname: v\nsteps:\n  - virtual-scan: {shape: sphere}\noutputs: {v.ply: virtual-scan}\n");
+        folder_.write(
+            "w.yaml",
+            "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n"
+            "  - voxel-thin: {bin-size: {sweep: [1 u, 2 u]}}\noutputs: {'{scan}-{variant}.ply': voxel-thin}\n");
+        folder_.write(
+            "v.yaml",
+            "scanmill: 1\nname: v\nsteps:\n  - virtual-scan: {shape: sphere}\noutputs: {v.ply: virtual-scan}\n");
     }
     CheckedBatch batch(const std::string& set = "{}") {
-        const std::string text = "scanmill: 1\nbatch: b\nscans: [\"*.xyz\"]\nworkflows: [w.yaml, v.yaml]\nset: " + set + "\n";
+        const std::string text =
+            "scanmill: 1\nbatch: b\nscans: [\"*.xyz\"]\nworkflows: [w.yaml, v.yaml]\nset: " + set + "\n";
         folder_.write("b.yaml", text);
         CheckedBatch checked = check_batch(text, (folder_ / "b.yaml").string(), library_);
         EXPECT_FALSE(checked.has_errors());

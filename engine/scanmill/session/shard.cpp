@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/batch/shard.hpp"
+#include "scanmill/session/shard.hpp"
 
 #include <fmt/format.h>
 
