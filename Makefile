@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper pictures test test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
+.PHONY: help demo nightly paper pictures test test-machines test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
 	wheel deb image test-packages packages-deps
 .DEFAULT_GOAL := help
 
@@ -22,6 +22,9 @@ nightly: release ## compare four surfaces of virtual scans with the accepted run
 	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)
 	build/release/bin/scanmill report build/nightly
 	-build/release/bin/scanmill report build/nightly --html build/nightly.html
+
+test-machines: dev ## run a batch with Snakemake and with Slurm, where they are installed
+	tests/machines/run.sh build/dev/bin/scanmill
 
 test-report: ## test the report page in a headless browser; needs Node and Chromium
 	tests/report/run.sh
