@@ -77,6 +77,10 @@ protected:
         add({"runs", "out"});
         for (int run = 1; run <= 10; ++run) add({"runs", "out", "show", std::to_string(run)});
         add({"runs", "out", "--prune", "--keep", "2", "--dry-run"});
+        add({"batch", "b.yaml", "--shard", "1/1", "-o", "part"});
+        add({"runs", "merge", "part", "-o", "whole"});
+        add({"export", "slurm", "b.yaml", "-o", "cluster"});
+        add({"batch", "--status", "cluster"});
         add({"info", "points.xyz", "corner.off", "stray.xyz", "absent.ply", "features.json"});
         add({"measure", "corner.off", "points.xyz"});
         add({"measure", "corner.off", "corner.off", "--certify", "--unit", "mm"});
