@@ -45,14 +45,14 @@ constexpr std::string_view picture_end = ".png", deviation_end = "-deviation.png
 
 /// The content of KEY.json. It is written after the other files.
 struct Note {
-    std::string sha256;  ///< hash of the file of which the preview is
+    std::string sha256;  ///< hash of the previewed file
     std::string read;  ///< name of this file if a run read it; empty for an output
     std::vector<std::string> files;  ///< names in the folder of previews
     double scale = 0;
     std::string reason;
 };
 constexpr auto fields(const Note*) {
-    return std::tuple{field("sha256", &Note::sha256, "Hash of the file of which the preview is."),
+    return std::tuple{field("sha256", &Note::sha256, "Hash of the previewed file."),
                       field("read", &Note::read, "Name of this file if a run read it.").optional(),
                       field("files", &Note::files), field("scale", &Note::scale).optional(),
                       field("reason", &Note::reason, "Why a file is missing.").optional()};

@@ -11,7 +11,7 @@
 /// | KEY.png           | picture of the file                                                                       |
 /// | KEY.ply           | the simplified mesh, if the file is a mesh, with its deviation by vertex, if it has one   |
 /// | KEY-deviation.png | picture coloured by the deviation: of KEY.ply, or of the file if that has the deviation   |
-/// | KEY.json          | what the preview is of, names of its files, scale of the colours, why a file is missing   |
+/// | KEY.json          | hash of the previewed file, names of the parts, scale of the colours, why one is missing  |
 ///
 /// The filters are found by what they declare: the first by name that draws, that simplifies, and that measures.
 
