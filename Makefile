@@ -87,31 +87,31 @@ bench-quality: deps ## compare our results with trimesh, Open3D, four papers and
 	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) $(surfaces) $(probing) peers-drivers
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/outliers.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/wang_hybrid.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/wang_hybrid.py build/bench/bin/scanmill
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/woo_dey_table_1.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/sharp_surface.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/registration.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
-	$$(bench/peers/environment.sh build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill
-	$(if $(LARGE),$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill)
-	$(if $(LARGE),$$(bench/peers/environment.sh build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill --rebuild local)
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/sharp_surface.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/registration.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/surfaces.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/woo_dey_updates.py build/bench/bin/scanmill
+	$(if $(LARGE),$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill)
+	$(if $(LARGE),$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/quality/update_sweep.py build/bench/bin/scanmill --rebuild local)
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
-	$$(bench/peers/environment.sh build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
+	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
 
 fuzz: ## fuzz every reader, FUZZ_SECONDS=60 for each, until the first finding
 	tools/deps.sh
@@ -136,7 +136,7 @@ packages-deps: deps
 	tools/deps.sh packages
 
 wheel: packages-deps release ## make dist/scanmill-….whl for pip
-	$$(packaging/wheel/environment.sh build/packages/python) packaging/wheel/build.py build/release dist
+	$$(tools/python_environment.sh packaging/wheel/requirements.txt build/packages/python) packaging/wheel/build.py build/release dist
 
 deb: packages-deps release ## make dist/scanmill_….deb for Debian 12
 	packaging/deb/build.sh build/release dist

@@ -78,7 +78,7 @@ function content(data: SheetData, sheet: Sheet, inspection: Inspection, room: Ro
                 section("Histogram of the deviations", inspection.histogram ? deviationChart(inspection.histogram, inspection.unit) : element("p", { class: "quiet" }, "There is no histogram.")),
                 hasParts ? conditions : whole),
             element("div", null,
-                section("Largest deviations", labels ?? element("p", { class: "quiet" }, "There are no labels."), labels && labelKey(inspection, room.labels), left(inspection.labels.length - room.labels)),
+                section("Largest deviations", labels ?? element("p", { class: "quiet" }, "The step labels no points."), labels && labelKey(inspection, room.labels), left(inspection.labels.length - room.labels)),
                 hasParts ? whole : conditions)),
         parts(inspection, room),
     ];
@@ -98,7 +98,7 @@ function parts(inspection: Inspection, room: Room): HTMLElement | null {
         remarks.length > 0 && element("p", { class: "key" }, remarks.join(" ")));
 }
 
-/// The whole nominal, and the parts that deviate most if there is no room for all.
+/// The whole nominal and its parts. If not all fit, those that deviate most.
 function worstRows(inspection: Inspection, most: number): { rows: Row[]; order: string } {
     const [whole, ...others] = inspection.rows;
     if (!whole || inspection.rows.length <= most) return { rows: inspection.rows, order: "" };
@@ -124,7 +124,7 @@ function chosenColumns(inspection: Inspection): number[] {
 
 function pictures(data: SheetData, sheet: Sheet, room: Room): HTMLElement {
     const shown = sheet.pictures.slice(0, 2).filter((picture) => data.images[picture.image] !== undefined);
-    if (shown.length === 0) return element("p", { class: "no-pictures quiet" }, "There are no pictures of this part.");
+    if (shown.length === 0) return element("p", { class: "no-pictures quiet" }, "This part has no pictures.");
     return element("div", { class: `pictures size-${room.pictures} ${shown.length > 1 ? "two" : "one"}` }, shown.map((picture) =>
         element("figure", null, element("img", { src: data.images[picture.image], alt: `${picture.caption} of ${sheet.scan}` }), element("figcaption", null, shortened(picture.caption, 120)))));
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opens pages in headless Chromium, and records what they must not do: messages, errors and requests.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
 import { chromium } from "playwright-core";
 
 export const pages = new URL("./build/pages/", import.meta.url).href;
@@ -53,4 +56,23 @@ export async function colours(page, locator) {
         const all = pixels.length / 4;
         return { drawn: drawn / all, blue: blue / all, red: red / all };
     }, shot);
+}
+
+/// The data in a page of build/pages.
+export function readData(name) {
+    return JSON.parse(/<script type="application\/json" id="data">(.*?)<\/script>/s.exec(readFileSync(new URL(`${name}.html`, pages), "utf8"))[1]);
+}
+
+/// A test that opens a page, runs the body, and asserts that nothing was reported or requested meanwhile.
+export function browserTestsOf(browser) {
+    return (title, name, options, body) =>
+        test(title, async () => {
+            const page = await open(browser(), name, options);
+            try {
+                await body(page);
+                assert.deepEqual(page.faults, []);
+            } finally {
+                await page.close();
+            }
+        });
 }

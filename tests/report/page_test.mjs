@@ -3,27 +3,14 @@
 import assert from "node:assert/strict";
 import { readFileSync, statSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
-import { colours, launch, open, pages } from "./browser.mjs";
+import { browserTestsOf, colours, launch, open, pages, readData } from "./browser.mjs";
 
 let browser;
 before(async () => void (browser = await launch()));
 after(() => browser.close());
+const browserTest = browserTestsOf(() => browser);
 
 const sources = ["nightly", "small", "first", "one", "none", "inspected", "many", "empty"];
-const readData = (name) => JSON.parse(/<script type="application\/json" id="data">(.*?)<\/script>/s.exec(readFileSync(new URL(`${name}.html`, pages), "utf8"))[1]);
-
-/// Opens a page, runs the body, and asserts that nothing was reported or requested meanwhile.
-function browserTest(title, name, options, body) {
-    test(title, async () => {
-        const page = await open(browser, name, options);
-        try {
-            await body(page);
-            assert.deepEqual(page.faults, []);
-        } finally {
-            await page.close();
-        }
-    });
-}
 
 const scans = (page) => page.locator("#matrix .scroll tbody th").allTextContents();
 const isAtMost = async (page, limit) => assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= limit);

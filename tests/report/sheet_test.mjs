@@ -3,29 +3,16 @@
 import assert from "node:assert/strict";
 import { readFileSync, statSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
-import { launch, open, pages } from "./browser.mjs";
+import { browserTestsOf, launch, open, pages, readData } from "./browser.mjs";
 
 let browser;
 before(async () => void (browser = await launch()));
 after(() => browser.close());
+const browserTest = browserTestsOf(() => browser);
 
 const sheets = ["sheet-one", "sheet-several", "sheet-hard", "sheet-bare", "sheet-none", "sheet-many"];
 const paper = { width: ((210 - 28) * 96) / 25.4, height: ((297 - 28) * 96) / 25.4 };
-const readData = (name) => JSON.parse(/<script type="application\/json" id="data">(.*?)<\/script>/s.exec(readFileSync(new URL(`${name}.html`, pages), "utf8"))[1]);
 const part = (page, name) => page.locator("main > .sheet").filter({ has: page.locator("h2.name", { hasText: name }) });
-
-/// Opens a page, runs the body, and asserts that nothing was reported or requested meanwhile.
-function browserTest(title, name, options, body) {
-    test(title, async () => {
-        const page = await open(browser, name, options);
-        try {
-            await body(page);
-            assert.deepEqual(page.faults, []);
-        } finally {
-            await page.close();
-        }
-    });
-}
 
 async function pagesOfPdf(page) {
     const pdf = (await page.pdf({ preferCSSPageSize: true })).toString("latin1");
@@ -156,7 +143,7 @@ describe("the page of a part", () => {
         assert.doesNotMatch(text, /Passed/);
     });
     browserTest("Part_NoPicturesAndLabels_SaySo", "sheet-bare", {}, async (page) => {
-        assert.match(await page.locator(".sheet").innerText(), /There are no pictures of this part\.[\s\S]*There are no labels\.[\s\S]*2 pictures could not be read\./);
+        assert.match(await page.locator(".sheet").innerText(), /This part has no pictures\.[\s\S]*The step labels no points\.[\s\S]*2 pictures could not be read\./);
         assert.equal(await page.locator("img, .parts, .files").count(), 0);
     });
     browserTest("Part_NotInspected_SaysWhy", "sheet-none", {}, async (page) => {

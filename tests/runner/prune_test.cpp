@@ -11,6 +11,7 @@
 #include "scanmill/session/output_lock.hpp"
 #include "support/folders.hpp"
 #include "support/program.hpp"
+#include "support/report_page.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -158,8 +159,7 @@ TEST_F(Prune, AnOutputThatAKeptRunReads_Stays) {
 }
 
 TEST_F(Prune, PreviewsOfRemovedRuns_Go) {
-    if (!fs::exists(fs::path(build_folder()) / "share/scanmill/report/page.html"))
-        GTEST_SKIP() << "the report page is not built; it needs Node and npm";
+    if (!has_report_page()) GTEST_SKIP() << no_report_page;
     const auto previews = [&] {
         std::size_t count = 0;
         for (const auto& entry : fs::directory_iterator(folder_ / "out/previews"))

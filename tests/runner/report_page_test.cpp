@@ -11,6 +11,7 @@
 
 #include "support/folders.hpp"
 #include "support/program.hpp"
+#include "support/report_page.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -21,12 +22,10 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-bool has_page() { return fs::exists(fs::path(build_folder()) / "share/scanmill/report/page.html"); }
-
 class ReportPage : public testing::Test {
 protected:
     void SetUp() override {
-        if (!has_page()) GTEST_SKIP() << "the report page is not built; it needs Node and npm";
+        if (!has_report_page()) GTEST_SKIP() << no_report_page;
         folder_.write("scan.yaml",
                       "scanmill: 1\nname: scan\nparameters: {shape: sphere}\nsteps:\n  - virtual-scan: {shape: $shape, "
                       "views: [12], resolution: 3 %diag}\noutputs: {'{workflow}.ply': virtual-scan}\n");

@@ -10,6 +10,7 @@
 
 #include "support/folders.hpp"
 #include "support/program.hpp"
+#include "support/report_page.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -22,13 +23,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-bool has_sheet() { return fs::exists(fs::path(build_folder()) / "share/scanmill/report/sheet.html"); }
-
 /// Two boxes of 60 x 40 x 20 mm, of which one is 0.3 mm too long, and a broken scan.
 class ReportSheet : public testing::Test {
 protected:
     void SetUp() override {
-        if (!has_sheet()) GTEST_SKIP() << "the report page is not built; it needs Node and npm";
+        if (!has_report_page()) GTEST_SKIP() << no_report_page;
         folder_.write("block.off",
                       "OFF\n8 12 0\n-30 -20 -10\n30 -20 -10\n30 20 -10\n-30 20 -10\n-30 -20 10\n30 -20 10\n30 20 10\n"
                       "-30 20 10\n3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n"

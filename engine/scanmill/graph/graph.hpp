@@ -140,7 +140,7 @@ struct RunCell {
     std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
-    std::size_t place = 0;  ///< of a shard: place among all cells of the batch
+    std::size_t place = 0;  ///< place among all cells of the batch; 0 in runs that are not shards
 };
 
 struct RunGraph {

@@ -82,7 +82,7 @@ public:
     void add_pictures(FilterLibrary& library, const PreviewSettings& settings,
                       const std::function<void(std::string)>& warn) {
         std::vector<PreviewWish> wishes;
-        std::vector<std::pair<std::size_t, std::string>> sheets;  // of the wishes, with the caption
+        std::vector<std::pair<std::size_t, std::string>> sheets;  // sheet and caption of each wish
         for (std::size_t sheet = 0; sheet < document_.sheets.size(); ++sheet) {
             if (!document_.sheets[sheet].inspection) continue;
             const CellFiles files = files_of(*record_of_sheet_[sheet]);

@@ -87,8 +87,9 @@ std::vector<Preview> make_previews(const std::filesystem::path& folder, const st
                                    FilterLibrary& library, const PreviewSettings& settings,
                                    const std::function<void(std::string)>& warn);
 
-/// The files of the previews in the output folder `folder` that are neither of an output with one of these hashes nor
-/// of a file that was read and has one of these names (without its folder), in the order in which to remove them.
+/// The files of unused previews in the output folder `folder`, in the order in which to remove them. A preview is used
+/// if it shows an output with one of these hashes, or a file that was read and has one of these names without its
+/// folder.
 std::vector<std::filesystem::path> unused_previews(const std::filesystem::path& folder,
                                                    const std::set<std::string>& outputs,
                                                    const std::set<std::string>& read);

@@ -168,7 +168,7 @@ Pruned prune(const fs::path& folder, std::size_t keep, bool dry_run, const std::
             to_remove.emplace_back(file, std::move(all));
         }
     }
-    std::set<std::string> hashes;  // of the outputs of runs that stay
+    std::set<std::string> hashes;  // what runs that stay wrote
     for (const RecordedFile& file : files)
         if (kept.contains(file.run)) hashes.insert(file.sha256);
     const std::vector<fs::path> previews = unused_previews(folder, hashes, read);

@@ -38,7 +38,7 @@ struct SessionTask {
     RunGraph graph;
     Limits limits;
     Gate gate{};  ///< gate of the batch; Gate::repeats has no effect if there is a cache
-    std::string shard{}, key_of_cells{};  ///< of a shard; see RunStart
+    std::string shard{}, key_of_cells{};  ///< as in RunStart; empty for a whole batch
 };
 
 /// Properties of a run that are known when it starts.

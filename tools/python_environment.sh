@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# environment.sh FOLDER: creates a Python environment with the packages of requirements.txt in FOLDER and prints the path of
-# its interpreter. Does not change an environment that already has these packages.
+# python_environment.sh REQUIREMENTS FOLDER: creates a Python environment with the packages of the file REQUIREMENTS in FOLDER and
+# prints the path of its interpreter. Does not change an environment that already has these packages.
 set -euo pipefail
-folder=$1
-wanted=$(dirname "$0")/requirements.txt
+wanted=$1
+folder=$2
 if ! cmp -s "$wanted" "$folder/requirements.txt"; then
     python3 -m venv --clear "$folder"
     "$folder/bin/pip" install --quiet --disable-pip-version-check -r "$wanted"
