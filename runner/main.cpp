@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);
     app.require_subcommand(1);
     app.set_help_all_flag("--help-all", "Help of every command");
-    const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
+    const bool json = std::any_of(
+        argv, argv + argc, [](std::string_view argument) { return argument == "--json" || argument == "--events"; });
     Action chosen;
     add_run_and_batch(app, chosen, {argv, argv + argc});
     add_export(app, chosen);

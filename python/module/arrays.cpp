@@ -50,8 +50,8 @@ Column column_of(const std::string& name, const GivenArray& array, int exponent)
         throw nb::type_error(("the column '" + name + "' has the wrong shape").c_str());
     const auto components = static_cast<u32>(array.ndim() == 2 ? array.shape(1) : 1);
     if (components == 0) throw nb::type_error(("the column '" + name + "' has no numbers").c_str());
-    const Buffer<std::byte> bytes(owner_of(array), static_cast<const std::byte*>(static_cast<const void*>(array.data())),
-                                  array.nbytes());
+    const Buffer<std::byte> bytes(
+        owner_of(array), static_cast<const std::byte*>(static_cast<const void*>(array.data())), array.nbytes());
     return Column(name, scalar_type(array), components, bytes, {}, exponent);
 }
 

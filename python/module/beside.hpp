@@ -16,10 +16,13 @@ struct Beside {
     std::atomic<double> progress = -1;  ///< the fraction that is done; negative: not known
 };
 
-/// Runs `work` and waits for its end. `on_progress` is a callable of one number, or None. If a signal handler or the
-/// callback throws, cancels the work, waits until it has ended, and throws that exception. Otherwise throws what the
-/// work threw.
-void run_beside(const std::function<void(Beside&)>& work, nanobind::handle on_progress);
+/// Runs `work` and waits for its end, then throws what it threw. `on_progress` is a callable of one number, or None. If
+/// a signal handler or the callback throws, cancels the work and throws that exception. Work that does not end soon is
+/// left to itself then, so it must own everything that it uses.
+void run_beside(std::function<void(Beside&)> work, nanobind::handle on_progress);
+
+/// Waits for work that was left to itself. To be called before the interpreter ends.
+void wait_for_leftovers();
 
 /// Throws Error in a process that was forked after its parent had used threads: those threads are missing here, so work
 /// would wait for them for ever. To be called before any work that may use threads.

@@ -172,17 +172,17 @@ nb::dict described(const Answer& answer) {
     result["outputs"] = outputs;
     result["parameters"] = parameters;
     result["metrics"] = metrics;
-    result["unit"] = report.metrics.unit == LengthUnit::unknown ? nb::none()
-                                                               : nb::cast(std::string(symbol(report.metrics.unit)));
+    result["unit"] =
+        report.metrics.unit == LengthUnit::unknown ? nb::none() : nb::cast(std::string(symbol(report.metrics.unit)));
     result["warnings"] = report.warnings;
     result["doubts"] = doubts;
     result["error"] = report.failure ? exception_of(report.failure.error) : nb::none();
     return result;
 }
 
-nb::dict run(const std::string& filter, const GivenInputs& inputs, const GivenParameters& parameters, std::uint64_t seed,
-             unsigned threads, nb::object on_progress, const std::optional<std::string>& program, u64 memory_limit,
-             double seconds_limit) {
+nb::dict run(const std::string& filter, const GivenInputs& inputs, const GivenParameters& parameters,
+             std::uint64_t seed, unsigned threads, nb::object on_progress, const std::optional<std::string>& program,
+             u64 memory_limit, double seconds_limit) {
     require_own_threads();
     auto step = std::make_shared<PlannedStep>();
     {
@@ -192,13 +192,13 @@ nb::dict run(const std::string& filter, const GivenInputs& inputs, const GivenPa
     }
     step->label = filter;
     step->parameters = parameters_from(step->spec, parameters);
-    const Request request{step,          inputs,       seed, threads > 0 ? threads : usable_cores(),
-                          memory_limit, seconds_limit};
-    Answer answer;
-    run_beside(
-        [&](Beside& beside) { answer = program ? run_isolated(request, *program, beside) : run_here(request, beside); },
-        on_progress);
-    return described(answer);
+    const Request request{step, inputs, seed, threads > 0 ? threads : usable_cores(), memory_limit, seconds_limit};
+    const auto answer = std::make_shared<Answer>();
+    const auto work = [request, program, answer](Beside& beside) {
+        *answer = program ? run_isolated(request, *program, beside) : run_here(request, beside);
+    };
+    run_beside(work, on_progress);
+    return described(*answer);
 }
 
 }  // namespace
@@ -233,6 +233,7 @@ void add_filters(nb::module_& module) {
     module.def("run", &run, nb::arg("filter"), nb::arg("inputs"), nb::arg("parameters"), nb::arg("seed"),
                nb::arg("threads"), nb::arg("on_progress").none(), nb::arg("program").none(), nb::arg("memory_limit"),
                nb::arg("seconds_limit"));
+    module.def("wait_for_leftovers", &wait_for_leftovers);
     module.def("core_library", [] { return core_library_file(); });
 }
 

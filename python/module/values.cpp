@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values and files: the class Value, values of arrays and of documents, reading and writing.
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -105,8 +104,9 @@ void add_lists(const Value& value, nb::dict& arrays) {
     }
     if (const Metrics* metrics = value.find<Metrics>()) {
         arrays["values"] = nb::cast(listed(*metrics));
-        arrays["unit"] = metrics->unit == LengthUnit::unknown ? nb::none()
-                                                              : nb::object(nb::cast(std::string(symbol(metrics->unit))));
+        arrays["unit"] = metrics->unit == LengthUnit::unknown
+                             ? nb::none()
+                             : nb::object(nb::cast(std::string(symbol(metrics->unit))));
     }
     if (const Picture* picture = value.find<Picture>()) arrays["caption"] = picture->caption;
 }
@@ -156,7 +156,11 @@ Value points_from(const GivenArray& positions, const GivenColumns& columns, cons
     PointCloud cloud{frame_from(frame), buffer_of<Vec3>(positions, "positions"), columns_from(columns)};
     const InvalidRows rule = invalid.empty() ? InvalidRows::by_format : *invalid_rows_named(invalid);
     const nb::gil_scoped_release released;
-    return near_origin(accepted(cloud, rule, false).result);
+    try {
+        return near_origin(accepted(cloud, rule, false).result);
+    } catch (const Error& error) {  // the sentence has no subject, because readers put the file's name before it
+        throw error.reworded("the array " + error.sentence()).set_hint("invalid='drop' leaves such rows out");
+    }
 }
 
 Value mesh_from(const GivenArray& positions, const GivenArray& triangles, const GivenColumns& vertex_columns,
@@ -196,7 +200,8 @@ std::pair<Value, std::vector<std::string>> value_from(const std::string& kind, c
     return {Value(known, object), warnings};
 }
 
-std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& file, const std::optional<std::string>& kind,
+std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& file,
+                                                const std::optional<std::string>& kind,
                                                 const std::optional<std::string>& unit, const std::string& frame,
                                                 const std::string& invalid) {
     require_own_threads();
@@ -209,19 +214,21 @@ std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& fil
     if (!invalid.empty()) leaf.invalid = *invalid_rows_named(invalid);
     leaf.kind = kind ? known_kind(*kind) : kind_of<PointCloud>();
     if (!kind) leaf.also = all_kinds();  // what the file holds
-    std::pair<Value, std::vector<std::string>> result;
-    const auto warn = [&](std::string sentence) { result.second.push_back(std::move(sentence)); };
-    run_beside([&](Beside&) { result.first = read_leaf(leaf, warn); }, nb::none());
-    return result;
+    const auto result = std::make_shared<std::pair<Value, std::vector<std::string>>>();
+    const auto work = [leaf, result](Beside&) {
+        result->first = read_leaf(leaf, [&](std::string sentence) { result->second.push_back(std::move(sentence)); });
+    };
+    run_beside(work, nb::none());
+    return *result;
 }
 
 std::vector<std::string> write(const Value& value, const std::filesystem::path& file) {
     require_own_threads();
-    std::vector<std::string> warnings;
+    const auto warnings = std::make_shared<std::vector<std::string>>();
     WriteOptions options;
-    options.on_warning = [&](std::string sentence) { warnings.push_back(std::move(sentence)); };
-    run_beside([&](Beside&) { write_file(file, value, options); }, nb::none());
-    return warnings;
+    options.on_warning = [warnings](std::string sentence) { warnings->push_back(std::move(sentence)); };
+    run_beside([value, file, options](Beside&) { write_file(file, value, options); }, nb::none());
+    return *warnings;
 }
 
 nb::bytes png_of(const Value& value) {

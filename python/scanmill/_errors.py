@@ -46,6 +46,12 @@ class Error(Exception):
         if self.hint:
             self.add_note(f"hint: {self.hint}")
 
+    def with_text_replaced(self, old: str, new: str) -> Error:
+        """The same error with another text in its sentence and its frames."""
+        error = Error(self.sentence.replace(old, new), [frame.replace(old, new) for frame in self.frames], self.hint)
+        error.__dict__ = {**self.__dict__, **{name: error.__dict__[name] for name in ("sentence", "frames", "__notes__") if name in error.__dict__}}
+        return error
+
     def __reduce__(self):
         return _error_again, (self.sentence, self.frames, self.hint)
 

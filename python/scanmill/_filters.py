@@ -42,6 +42,7 @@ class Filter:
     def __init__(self, name: str):
         self.declaration = json.loads(_native.declaration(name))
         self.name = name
+        self.function = name.replace("-", "_")
         taken = set(_CALL)
         self.ports: dict[str, dict] = {}
         self.parameters: dict[str, dict] = {}
@@ -189,16 +190,16 @@ def _given_inputs(filter_: Filter, given: Mapping[str, Any]) -> list[tuple[str, 
         value = given.get(name)
         if value is None:
             if not port.get("optional"):
-                raise TypeError(f"{filter_.name}() needs `{name}`: {kind_text(port)}")
+                raise TypeError(f"{filter_.function}() needs `{name}`: {kind_text(port)}")
             continue
         items = value if port.get("list") and isinstance(value, (list, tuple)) else [value]
         if not items:
-            raise TypeError(f"{filter_.name}() needs at least one value in `{name}`")
+            raise TypeError(f"{filter_.function}() needs at least one value in `{name}`")
         for item in items:
             if isinstance(item, np.ndarray) and "points" in (port["kind"], *port.get("also", [])):
                 item = Points(item)
             if not isinstance(item, Value) or item.kind not in (port["kind"], *port.get("also", [])):
-                raise TypeError(f"{filter_.name}() takes {kind_text(port)} as `{name}`; it was given {type(item).__name__}")
+                raise TypeError(f"{filter_.function}() takes {kind_text(port)} as `{name}`; it was given {type(item).__name__}")
             inputs.append((port["name"], item._native))
     return inputs
 
@@ -217,13 +218,13 @@ def _reporter(progress: Any, name: str) -> tuple[Callable[[float], None] | None,
 def call(filter_: Filter, *args: Any, **kwargs: Any) -> Any:
     names = list(filter_.ports)
     if len(args) > len(names):
-        raise TypeError(f"{filter_.name}() takes {len(names)} values by position ({', '.join(names) or 'none'}); it was given {len(args)}")
+        raise TypeError(f"{filter_.function}() takes {len(names)} values by position ({', '.join(names) or 'none'}); it was given {len(args)}")
     given = dict(zip(names, args))
     options = {name: default for name, (default, _, _) in _CALL.items()}
     parameters = []
     for name, value in kwargs.items():
         if name in given:
-            raise TypeError(f"{filter_.name}() was given `{name}` twice")
+            raise TypeError(f"{filter_.function}() was given `{name}` twice")
         if name in filter_.ports:
             given[name] = value
         elif name in filter_.parameters:
@@ -237,10 +238,10 @@ def call(filter_: Filter, *args: Any, **kwargs: Any) -> Any:
 
             known = [*filter_.ports, *filter_.parameters, *options]
             near = get_close_matches(name, known, 1)
-            raise TypeError(f"{filter_.name}() has no parameter `{name}`; {f'did you mean `{near[0]}`?' if near else 'it has ' + ', '.join(known)}")
+            raise TypeError(f"{filter_.function}() has no parameter `{name}`; {f'did you mean `{near[0]}`?' if near else 'it has ' + ', '.join(known)}")
     for name, spec in filter_.parameters.items():
         if spec.get("required") and kwargs.get(name) is None:
-            raise TypeError(f"{filter_.name}() needs `{name}`: {spec['expects']}")
+            raise TypeError(f"{filter_.function}() needs `{name}`: {spec['expects']}")
     inputs = _given_inputs(filter_, given)
     on_progress, close = _reporter(options["progress"], filter_.name)
     try:
@@ -275,7 +276,7 @@ def _function(name: str) -> Callable[..., Any]:
     def function(*args: Any, **kwargs: Any) -> Any:
         return call(filter_, *args, **kwargs)
 
-    function.__name__ = function.__qualname__ = name.replace("-", "_")
+    function.__name__ = function.__qualname__ = filter_.function
     function.__module__ = "scanmill"
     function.__doc__ = filter_.page()
     function.__signature__ = filter_.signature()  # type: ignore[attr-defined]

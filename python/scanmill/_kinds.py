@@ -3,6 +3,7 @@
 are read-only."""
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import tempfile
@@ -17,6 +18,8 @@ from . import _native
 from ._errors import ScanmillWarning
 
 Columns = Mapping[str, Any]
+
+atexit.register(_native.wait_for_leftovers)
 
 
 def _shared(given: Any, name: str, type_: Any, shape: tuple[int | None, ...], copy: bool) -> np.ndarray:

@@ -40,7 +40,8 @@ struct ExecuteOptions {
     SessionSettings session;
     CacheOptions cache;
     std::uint64_t seed = 0;
-    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false, is_wide = false;
+    bool no_cache = false, strict = false, dry_run = false, json = false, has_events = false, quiet = false,
+         is_wide = false;
     std::filesystem::path html;  ///< batches only
 };
 
@@ -256,7 +257,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
-    if (options_.json && is_batch) observers.push_back(&events.emplace(graph));
+    if (options_.has_events || (options_.json && is_batch)) observers.push_back(&events.emplace(graph));
     std::int64_t number = 0;
     const RunReport report =
         session_.run(task, jobs, library_, std::move(predictions), observers, [&](const RunStarted& run) {
@@ -369,7 +370,7 @@ int run_workflow(const RunOptions& options) {
         throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + options.workflow);
     Settings settings = parse_settings(options.settings);
     CheckedWorkflow checked = check_workflow(workflow, text, execution.library(), settings, options.has_picture);
-    if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
+    if (!report({checked.diagnostics}, options.execute.json || options.execute.has_events)) return bad_request;
 
     require_distinct(options.scans);
     RunRequest request = options.request;
@@ -554,7 +555,10 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     run.add_flag("--picture", options.has_picture,
                  "Also write a picture (PNG) of the last surface among the outputs, beside it");
     add_execute_options(run, options.execute);
-    run.add_flag("--json", options.execute.json, "Print the report as JSON");
+    CLI::Option* run_json = run.add_flag("--json", options.execute.json, "Print the report as JSON");
+    run.add_flag("--events", options.execute.has_events,
+                 "Print events as JSON, one per line, as `scanmill batch --json` does")
+        ->excludes(run_json);
 
     auto [batch, batch_options] = add_command<BatchOptions>(
         app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);

@@ -1,0 +1,433 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs workflows and batches with the program, and gives its records as objects."""
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from . import _native
+from ._errors import DoubtWarning, Error, ScanmillWarning
+from ._files import read
+from ._kinds import Value
+from ._program import program
+
+#: Seconds that an interrupted run has to stop in an orderly way.
+_PATIENCE = 3
+
+
+@dataclass
+class Output:
+    """A file that a cell wrote, or should have written."""
+
+    file: Path
+    kind: str
+    outcome: str
+    properties: dict[str, Any] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+    def read(self) -> Any:
+        """The value in the file."""
+        return read(self.file)
+
+
+@dataclass
+class Step:
+    """A step on one scan. Cells may share it."""
+
+    name: str
+    filter: str
+    outcome: str
+    origin: str
+    seconds: float
+    metrics: dict[str, Any] = field(default_factory=dict)
+    parameters: dict[str, str] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    error: str = ""
+
+
+@dataclass
+class Cell:
+    """One variant of one workflow on one scan."""
+
+    scan: str
+    workflow: str
+    variant: str
+    outcome: str  # "ok", "doubtful", "failed" or "skipped"
+    seconds: float
+    outputs: list[Output] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    error: str = ""
+
+    @property
+    def metrics(self) -> dict[str, Any]:
+        """What all steps measured: "step.metric" to number."""
+        return {f"{step.name}.{name}": value for step in self.steps for name, value in step.metrics.items()}
+
+
+@dataclass
+class Run:
+    """What a run or a batch gave."""
+
+    name: str
+    folder: Path
+    cells: list[Cell]
+    number: int = 0  # number of the run in the records; 0 if it is not recorded
+    interrupted: bool = False
+    verdict: dict[str, Any] | None = None  # of a batch with a gate or an accepted run
+    exit_code: int = 0
+
+    @property
+    def ok(self) -> bool:
+        """Whether the command would exit with 0."""
+        return self.exit_code == 0
+
+    def table(self) -> list[dict[str, Any]]:
+        """One dict per cell, as pandas.DataFrame takes them: scan, workflow, variant, outcome, seconds, error, metrics."""
+        return [
+            {
+                "scan": cell.scan,
+                "workflow": cell.workflow,
+                "variant": cell.variant,
+                "outcome": cell.outcome,
+                "seconds": cell.seconds,
+                "error": cell.error,
+                **cell.metrics,
+            }
+            for cell in self.cells
+        ]
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def __iter__(self) -> Iterator[Cell]:
+        return iter(self.cells)
+
+    def __repr__(self) -> str:
+        outcomes = [cell.outcome for cell in self.cells]
+        counts = ", ".join(f"{outcomes.count(name)} {name}" for name in ("ok", "doubtful", "failed", "skipped") if name in outcomes)
+        return f"<scanmill.Run: {self.name}, {counts or 'no cells'}, in '{self.folder}'>"
+
+    def _repr_html_(self) -> str:
+        head = ("scan", "variant", "outcome", "seconds", "files")
+        rows = [(cell.scan, cell.variant, cell.outcome, f"{cell.seconds:.2f}", ", ".join(output.file.name for output in cell.outputs)) for cell in self.cells]
+        cells = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
+        return "<table><tr>" + "".join(f"<th>{name}</th>" for name in head) + f"</tr>{cells}</table>"
+
+
+def run(
+    workflow: str | os.PathLike | Mapping[str, Any],
+    scans: Any = (),
+    *,
+    inputs: Mapping[str, Any] | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    unit: str | None = None,
+    invalid: str | None = None,
+    only: str | Iterable[str] = (),
+    until: str | None = None,
+    save: str | Iterable[str] = (),
+    picture: bool = False,
+    output: str | os.PathLike = "scanmill-out",
+    jobs: int | None = None,
+    threads: int = 0,
+    seed: int = 0,
+    cache: str | os.PathLike | bool = True,
+    strict: bool = False,
+    check: bool = True,
+    progress: Callable[[float], None] | bool | None = None,
+    on_event: Callable[[dict[str, Any]], None] | None = None,
+) -> Run:
+    """Runs a workflow over one scan or many, as the command `scanmill run` does.
+
+    Parameters
+    ----------
+    workflow
+        A file, the name of a ready workflow ("raw-scans"), YAML text, or a dict of the same form.
+    scans
+        One or more files or values for the workflow's first input.
+    inputs : dict, optional
+        Name of an input to a file, a value, or a list of them.
+    parameters : dict, optional
+        Values of the workflow's parameters: a text with its unit ("0.2 mm"), a number, a truth value, or a list.
+    unit, invalid, only, until, save, picture, output, jobs, threads, seed, strict
+        As the options of the command: see `scanmill run --help`.
+    cache
+        A folder; True for the user's own cache; False computes everything and stores nothing.
+    check : bool
+        Raise Error if a cell failed. The error has the run as `run`.
+    progress
+        Called with the fraction of the steps that are done. True shows a bar.
+    on_event
+        Called with every event of the run, a dict: see `scanmill run --events`.
+
+    Returns
+    -------
+    Run
+    """
+    with ExitStack() as stack:
+        words = ["run", stack.enter_context(_workflow(workflow, "workflow"))]
+        given: dict[str, Any] = dict(inputs or {})
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="scanmill-")))
+        words += _files(scans, folder, "scan")
+        for name, values in given.items():
+            words += ["--in", f"{name}={','.join(_files(values, folder, name))}"]
+        for name, value in (parameters or {}).items():
+            words += ["--set", f"{name.replace('_', '-')}={_text(value)}"]
+        for option, value in (("--unit", unit), ("--invalid", invalid), ("--until", until)):
+            words += [option, value] if value else []
+        for option, values in (("--only", only), ("--save", save)):
+            for value in [values] if isinstance(values, str) else values:
+                words += [option, value]
+        words += ["--picture"] if picture else []
+        words += ["--events", *_common(output, jobs, threads, seed, cache, strict)]
+        return _execute(words, output, check, progress, on_event)
+
+
+def batch(
+    file: str | os.PathLike | Mapping[str, Any],
+    *,
+    scans: str | Iterable[str] = (),
+    workflows: str | Iterable[str] = (),
+    only: str | Iterable[str] = (),
+    output: str | os.PathLike = "scanmill-out",
+    jobs: int | None = None,
+    threads: int = 0,
+    seed: int = 0,
+    cache: str | os.PathLike | bool = True,
+    strict: bool = False,
+    check: bool = False,
+    progress: Callable[[float], None] | bool | None = None,
+    on_event: Callable[[dict[str, Any]], None] | None = None,
+) -> Run:
+    """Runs workflows over a library of scans, as the command `scanmill batch` does.
+
+    `file` is a batch file, the name of a ready one, its text, or a dict of the same form, whose paths then count from the
+    working folder. `scans`, `workflows` and `only` run a part of it. Failed cells raise no error unless `check` is true:
+    see Run.ok and Run.verdict. The other parameters are those of run().
+    """
+    with ExitStack() as stack:
+        words = ["batch", stack.enter_context(_workflow(file, "batch"))]
+        for option, values in (("--scan", scans), ("--workflow", workflows), ("--only", only)):
+            for value in [values] if isinstance(values, (str, os.PathLike)) else values:
+                words += [option, os.fspath(value)]
+        words += ["--json", *_common(output, jobs, threads, seed, cache, strict)]
+        return _execute(words, output, check, progress, on_event)
+
+
+def _common(output: Any, jobs: int | None, threads: int, seed: int, cache: Any, strict: bool) -> list[str]:
+    words = ["-q", "-o", os.fspath(output), "--threads", str(threads), "--seed", str(seed)]
+    words += ["-j", str(jobs)] if jobs is not None else []
+    words += ["--no-cache"] if cache is False else [] if cache is True else ["--cache", os.fspath(cache)]
+    return words + (["--strict"] if strict else [])
+
+
+@contextmanager
+def _workflow(given: Any, noun: str) -> Iterator[str]:
+    """The file's name. Text and dicts become a file in the working folder, from which their relative paths count."""
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and "\n" not in given):
+        yield os.fspath(given)
+        return
+    name = "name" if noun == "workflow" else "batch"
+    if isinstance(given, Mapping):
+        text = json.dumps({name: noun, **given}, indent=1)
+    elif isinstance(given, str):
+        text = given if re.search(rf"^{name}\s*:", given, re.MULTILINE) else f"{given}\n{name}: {noun}\n"
+    else:
+        raise TypeError(f"the {noun} is {type(given).__name__}; expected a file, a name, a text or a dict")
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=".", prefix=f"{noun}-", suffix=".yaml") as file:
+        file.write(text)
+        file.flush()
+        name = os.path.basename(file.name)
+        try:
+            yield name
+        except Error as error:  # the caller does not know the file
+            raise error.with_text_replaced(f"'{name}'", f"the {noun}").with_text_replaced(name, noun) from None
+
+
+def _files(given: Any, folder: Path, name: str) -> list[str]:
+    """The names of files; values are written to files."""
+    items = list(given) if isinstance(given, (list, tuple)) else [given]
+    files = []
+    for item in items:
+        if isinstance(item, Value):
+            extension = "ply" if item.kind in ("points", "mesh") else "json"
+            if not _native.can_write(extension, item.kind):
+                raise TypeError(f"a workflow cannot take {type(item).__name__} as '{name}'")
+            item_file = folder / f"{name}{'' if len(items) == 1 else f'-{len(files) + 1}'}.{extension}"
+            item.write(item_file)
+            files.append(str(item_file))
+        elif isinstance(item, (str, os.PathLike)):
+            files.append(os.fspath(item))
+        else:
+            raise TypeError(f"'{name}' is {type(item).__name__}; expected a file or a value such as Points")
+    return files
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_text(item) for item in value) + "]"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _error(document: Mapping[str, Any]) -> Error:
+    """The error that the program printed."""
+    if "error" in document:
+        error = document["error"]
+        return Error(error["message"], error.get("where", ()), error.get("hint", ""))
+    lines = [
+        f"{file['file']}:{found['line']}:{found['column']}: {found['message']}"
+        for file in document["files"]
+        for found in file["diagnostics"]
+        if found["severity"] == "error"
+    ]
+    return Error(lines[0]) if len(lines) == 1 else Error(f"{len(lines)} errors", lines)
+
+
+class _Collector:
+    """Makes a Run of events."""
+
+    def __init__(self, folder: Any):
+        self.run = Run("", Path(folder), [])
+        self.steps: dict[int, Step] = {}
+        self.total = 0
+        self.percents: dict[int, int] = {}
+        self.error: Error | None = None
+
+    def fraction(self) -> float:
+        return min(1.0, sum(self.percents.values()) / (100 * self.total)) if self.total else 0.0
+
+    def take(self, event: Mapping[str, Any]) -> None:
+        name = event.get("event")
+        if name is None:
+            self.error = _error(event)
+        elif name == "run-started":
+            self.run.name, self.run.number, self.total = event["name"], event["run"], event["steps"]
+        elif name == "step-progress":
+            self.percents[event["node"]] = event["percent"]
+        elif name == "step-ended":
+            self.percents[event["node"]] = 100
+            self.steps[event["node"]] = Step(
+                event["step"],
+                event.get("filter", ""),
+                event["outcome"],
+                event["origin"],
+                event["seconds"],
+                event.get("metrics", {}),
+                event.get("resolved", event.get("authored", {})),
+                event.get("warnings", []),
+                event.get("doubts", []),
+                event.get("error", ""),
+            )
+        elif name == "cell-ended":
+            outputs = [
+                Output(Path(each["file"]), each["kind"], each["outcome"], each.get("properties", {}), each.get("warnings", []))
+                for each in event["outputs"]
+            ]
+            self.run.cells.append(
+                Cell(
+                    event["scan"],
+                    event["workflow"],
+                    event["variant"],
+                    event["outcome"],
+                    event["seconds"],
+                    outputs,
+                    [self.steps[node] for node in event["steps"] if node in self.steps],
+                    event.get("doubts", []),
+                    event.get("error", ""),
+                )
+            )
+        elif name == "verdict":
+            self.run.verdict = {key: value for key, value in event.items() if key not in ("event", "at")}
+        elif name == "run-ended":
+            self.run.interrupted = event["interrupted"]
+
+
+def _execute(words: list[str], folder: Any, check: bool, progress: Any, on_event: Any) -> Run:
+    collector, shown = _Collector(folder), -1.0
+    if progress is True:
+        from ._bar import bar
+
+        progress, close = bar(words[0])
+    else:
+        close = None
+    try:
+        with tempfile.TemporaryFile() as errors:
+            process = subprocess.Popen([program(), *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors, start_new_session=True)
+            try:
+                for line in process.stdout:
+                    event = json.loads(line)
+                    collector.take(event)
+                    if on_event:
+                        on_event(event)
+                    if progress and collector.fraction() != shown:
+                        progress(shown := collector.fraction())
+                code = process.wait()
+            except BaseException:
+                _stop(process)
+                raise
+            finally:
+                process.stdout.close()
+            errors.seek(0)
+            printed = errors.read().decode("utf-8", "replace").strip()
+    finally:
+        if close:
+            close()
+    result = collector.run
+    result.exit_code = code
+    if code == 130:
+        raise KeyboardInterrupt
+    if code not in (0, 1, 4) or not result.name:
+        raise collector.error or Error(printed or f"the program ended with code {code}")
+    _warn(collector)
+    failed = [cell for cell in result.cells if cell.outcome == "failed"]
+    if check and failed:
+        first = failed[0]
+        others = f"; {len(failed) - 1} more of {len(result.cells)} cells failed" if len(failed) > 1 else ""
+        sentence, *frames = first.error.split("\n")
+        hint = next((line.removeprefix("hint: ") for line in frames if line.startswith("hint: ")), "")
+        error = Error(sentence + others, [line.strip() for line in frames if not line.startswith("hint: ")], hint)
+        error.run = result
+        raise error
+    return result
+
+
+def _stop(process: subprocess.Popen) -> None:
+    """Lets the run stop in an orderly way; kills it if that takes too long."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.communicate(timeout=_PATIENCE)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+def _warn(collector: _Collector) -> None:
+    """Warns of what the steps, the files and the cells report: each sentence once."""
+    seen: set[str] = set()
+
+    def warn(sentence: str, category: type[Warning]) -> None:
+        if sentence not in seen:
+            seen.add(sentence)
+            warnings.warn(sentence, category, stacklevel=5)
+
+    for step in collector.steps.values():
+        for sentence in step.warnings:
+            warn(f"{step.name}: {sentence}", ScanmillWarning)
+    for cell in collector.run.cells:
+        for output in cell.outputs:
+            for sentence in output.warnings:
+                warn(sentence, ScanmillWarning)
+        for doubt in cell.doubts:
+            warn(f"{cell.scan}, {cell.variant}: {doubt}", DoubtWarning)
