@@ -212,11 +212,13 @@ std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& fil
     leaf.unit = unit_of(unit);
     leaf.frame = frame;
     if (!invalid.empty()) leaf.invalid = *invalid_rows_named(invalid);
-    leaf.kind = kind ? known_kind(*kind) : kind_of<PointCloud>();
-    if (!kind) leaf.also = all_kinds();  // what the file holds
+    const std::optional<Kind> wanted = kind ? std::optional(known_kind(*kind)) : std::nullopt;
+    if (wanted != kind_of<PointCloud>()) leaf.also = all_kinds();  // points are also the vertices of a mesh file
     const auto result = std::make_shared<std::pair<Value, std::vector<std::string>>>();
-    const auto work = [leaf, result](Beside&) {
+    const auto work = [leaf, wanted, result](Beside&) {
         result->first = read_leaf(leaf, [&](std::string sentence) { result->second.push_back(std::move(sentence)); });
+        if (wanted && *wanted != result->first.kind())
+            throw Error("'{}' contains {}; expected {}", leaf.name(), result->first.kind().name(), wanted->name());
     };
     run_beside(work, nb::none());
     return *result;

@@ -73,9 +73,9 @@ class Filter:
     def page(self) -> str:
         """The docstring."""
         declared = self.declaration
-        parts = [declared["summary"], ""]
+        parts = [*textwrap.wrap(declared["summary"], 88), ""]
         if declared.get("source"):
-            parts += [f"Source: {declared['source']}.", ""]
+            parts += [*textwrap.wrap(f"Source: {declared['source']}.", 88), ""]
         parts += ["Parameters", "----------"]
         for name, port in self.ports.items():
             kind = kind_text(port)
@@ -199,9 +199,18 @@ def _given_inputs(filter_: Filter, given: Mapping[str, Any]) -> list[tuple[str, 
             if isinstance(item, np.ndarray) and "points" in (port["kind"], *port.get("also", [])):
                 item = Points(item)
             if not isinstance(item, Value) or item.kind not in (port["kind"], *port.get("also", [])):
-                raise TypeError(f"{filter_.function}() takes {kind_text(port)} as `{name}`; it was given {type(item).__name__}")
+                raise TypeError(f"{filter_.function}() takes {kind_text(port)} as `{name}`; it was given {_described(item, port)}")
             inputs.append((port["name"], item._native))
     return inputs
+
+
+def _described(item: Any, port: dict) -> str:
+    """What the caller passed; with the output of the same filter that fits, if one does."""
+    if not isinstance(item, Value):
+        return type(item).__name__
+    fitting = [name for name, value in item.outputs.items() if value.kind in (port["kind"], *port.get("also", []))]
+    also = f", whose filter also gave one: pass .outputs[{fitting[0]!r}]" if fitting else ""
+    return f"{type(item).__name__}{also}"
 
 
 def _reporter(progress: Any, name: str) -> tuple[Callable[[float], None] | None, Callable[[], None]]:
