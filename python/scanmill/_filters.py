@@ -115,16 +115,16 @@ class Filter:
         return self._with_python_names("\n".join(parts))
 
     def _with_python_names(self, page: str) -> str:
-        """Names with hyphens, in help texts, become the names that the function has for them."""
+        """Names with hyphens become the names that the function has for them. Both are equally long."""
         for name, spec in (self.ports | self.parameters).items():
-            if name != spec["name"]:
+            if "-" in spec["name"]:
                 page = re.sub(rf"(?<![\w-]){re.escape(spec['name'])}(?![\w-])", name, page)
         return page
 
 
 def entry(name: str, form: str, text: str) -> list[str]:
     head = f"{name} : {form}" if name else form
-    return [head, *(line for part in text.split("\n") for line in textwrap.wrap(part, 84, initial_indent="    ", subsequent_indent="    "))]
+    return [head, *(line for part in text.split("\n") for line in textwrap.wrap(part, 84, initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False))]
 
 
 def class_name(kind: str) -> str:
