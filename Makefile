@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper pictures test test-machines test-report deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
+.PHONY: help demo nightly paper pictures test test-machines test-report python python-deps test-python deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
 	wheel deb image test-packages packages-deps
 .DEFAULT_GOAL := help
 
@@ -28,6 +28,19 @@ test-machines: dev ## run a batch with Snakemake and with Slurm, where they are 
 
 test-report: ## test the report page in a headless browser; needs Node and Chromium
 	tests/report/run.sh
+
+# Options of CMake for the Python package; the environment has what builds it.
+with_python = -DSCANMILL_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/$$(tools/python_environment.sh python/requirements.txt build/python/environment)
+
+python-deps: deps
+	tools/deps.sh python
+
+python: dev python-deps ## build the Python package into build/dev/python
+	cmake --preset dev $(with_python) >/dev/null
+	cmake --build --preset dev -j $(jobs) --target scanmill-python-package
+
+test-python: python data ## test the Python package
+	tests/python/run.sh build/dev $$(tools/python_environment.sh tests/python/requirements.txt build/python/test-environment)
 
 paper: release data ## make docs/bernardini-1997.md: every stage of the paper's pipeline on one scan, with pictures
 	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
@@ -135,7 +148,9 @@ lint: ## run clang-tidy and clang's warnings over the C++ code
 packages-deps: deps
 	tools/deps.sh packages
 
-wheel: packages-deps release ## make dist/scanmill-….whl for pip
+wheel: packages-deps python-deps release ## make dist/scanmill-….whl for pip
+	cmake --preset release $(with_python) >/dev/null
+	cmake --build --preset release -j $(jobs)
 	$$(tools/python_environment.sh packaging/wheel/requirements.txt build/packages/python) packaging/wheel/build.py build/release dist
 
 deb: packages-deps release ## make dist/scanmill_….deb for Debian 12

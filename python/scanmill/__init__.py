@@ -6,6 +6,7 @@ Every installed filter is a function: `scanmill.decimate(mesh, max_error="0.1 %d
 `scanmill.run` and `scanmill.batch` run workflows as the command `scanmill` does.
 """
 import os
+import sys
 
 #: The folder that contains bin, lib, include and share: CMAKE_PREFIX_PATH of filters that are built against this package.
 prefix = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tree")
@@ -22,6 +23,21 @@ _NAMES = {
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
 
 
+def _imported(module: str):
+    """The module. Without what the functions need, says how to get it; the command needs nothing."""
+    from importlib import import_module
+
+    if sys.version_info < (3, 11):
+        raise ImportError(f"the functions of scanmill need Python 3.11 or newer; this is {sys.version.split()[0]}")
+    try:
+        return import_module(f"scanmill.{module}")
+    except ImportError as error:
+        for package, name in (("numpy", "numpy"), ("nanobind-backend", "nanobind_backend")):
+            if error.name == name or name in str(error):
+                raise ImportError(f"the functions of scanmill need the package {package}: pip install {package}") from error
+        raise
+
+
 def __getattr__(name: str):
     if name == "__version__":
         from importlib.metadata import PackageNotFoundError, version
@@ -33,14 +49,11 @@ def __getattr__(name: str):
 
             return native
     if name in _MODULE_OF:
-        from importlib import import_module
-
-        value = getattr(import_module(f"scanmill.{_MODULE_OF[name]}"), name)
+        value = getattr(_imported(_MODULE_OF[name]), name)
     elif name.startswith("_"):
         raise AttributeError(f"module 'scanmill' has no attribute '{name}'")
     else:
-        from ._filters import filters
-
+        filters = _imported("_filters").filters
         try:
             value = filters[name]
         except KeyError:
@@ -53,6 +66,5 @@ def __getattr__(name: str):
 
 
 def __dir__() -> list[str]:
-    from ._filters import filters
-
+    filters = _imported("_filters").filters
     return sorted({*globals(), *_MODULE_OF, *(name.replace("-", "_") for name in filters)})

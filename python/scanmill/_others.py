@@ -60,7 +60,10 @@ def to_open3d(value: Mesh | Points) -> Any:
     """An open3d.geometry.TriangleMesh or PointCloud, in world coordinates, with normals and colours."""
     open3d = _imported("open3d")
     _require(value, Mesh, Points)
-    vector = open3d.utility.Vector3dVector
+
+    def vector(rows: Any) -> Any:
+        return open3d.utility.Vector3dVector(np.array(rows, np.float64))  # it takes no read-only array
+
     columns = value.columns if isinstance(value, Points) else value.vertex_columns
     if isinstance(value, Points):
         made = open3d.geometry.PointCloud(vector(value.world_positions))
@@ -69,7 +72,7 @@ def to_open3d(value: Mesh | Points) -> Any:
         made = open3d.geometry.TriangleMesh(vector(value.world_positions), open3d.utility.Vector3iVector(value.triangles.astype(np.int32)))
         prefix = "vertex_"
     if "normal" in columns:
-        setattr(made, prefix + "normals", vector(columns["normal"].astype(np.float64)))
+        setattr(made, prefix + "normals", vector(columns["normal"]))
     if "colour" in columns:
         setattr(made, prefix + "colors", vector(columns["colour"][:, :3] / 255.0))
     return made
