@@ -151,6 +151,26 @@ class WheelTests:
         self.check_commands("/venv/bin/python3 -m scanmill")
         self.assertEqual(self.root.must("/venv/bin/python3 -c 'import scanmill; print(scanmill.__version__)'").strip(), version())
 
+    def test_functions_of_python(self) -> None:
+        """The tests of the Python package, with this system's Python and the packages that the functions need."""
+        error = self.root.run("/venv/bin/python3 -c 'import scanmill; scanmill.read'").stderr
+        self.assertRegex(error, "the functions of scanmill need the package [a-z-]*: pip install")
+        number = self.root.must("python3 -c 'import sys; print(sys.version_info.minor)'").strip()
+        wheels = SOURCE / f"build/packages/python-3.{number}"
+        if not wheels.exists():
+            download = f"pip download --quiet --only-binary=:all: --python-version 3.{number} --dest '{wheels}.part'"
+            shell(f"python3 -m {download} numpy nanobind-backend && mv '{wheels}.part' '{wheels}'")
+        for file in wheels.iterdir():
+            self.root.put(file, "/wheels")
+        for file in (SOURCE / "tests/python").glob("*.py"):
+            self.root.put(file, "/source/tests/python")
+        self.root.put(SOURCE / "docs/how-to/use-from-python.md", "/source/docs/how-to")
+        self.root.put(DATA / "points_3/kitten.xyz", "/source/build/data/points_3")
+        self.root.must(f"python3 -m venv /functions && /functions/bin/{INSTALL} --find-links /wheels '/{self.wheel.name}[python]'")
+        done = self.root.run("cd /source/tests/python && /functions/bin/python3 -B -m unittest discover -p '*_test.py'")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        print_figure(f"{self.suite}: tests of the Python package: {done.stderr.strip().splitlines()[-1]}, {done.stderr.strip().splitlines()[-3]}")
+
     def test_list_starts_fast(self) -> None:
         for _ in range(ROUNDS):
             listing = self.root.milliseconds(f"{self.command} list")
