@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Workflows and batches from Python."""
-import os
-import subprocess
 import time
 import unittest
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -96,8 +95,8 @@ class Runs(InFolder):
         with self.assertRaises(KeyboardInterrupt), interrupt_after(1.0, times):
             self.run_quietly("raw-scans", random_points(200_000))
         print(f"\n  stopped after {time.perf_counter() - times[0]:.3f} s", end=" ")
-        processes = subprocess.run(["pgrep", "-P", str(os.getpid()), "scanmill"], capture_output=True, text=True)
-        self.assertEqual(processes.stdout, "")
+        children = [pid for task in Path("/proc/self/task").iterdir() for pid in (task / "children").read_text().split()]
+        self.assertEqual(children, [])
 
     def test_an_exception_of_the_callback_stops_the_run(self):
         def stop(event):
