@@ -45,14 +45,14 @@ std::shared_ptr<const void> owner_of(const GivenArray& array) {
     });
 }
 
-Column column_of(const std::string& name, const GivenArray& array, int exponent) {
+Column column_of(const std::string& name, const GivenArray& array) {
     if (array.ndim() != 1 && array.ndim() != 2)
         throw nb::type_error(("the column '" + name + "' has the wrong shape").c_str());
     const auto components = static_cast<u32>(array.ndim() == 2 ? array.shape(1) : 1);
     if (components == 0) throw nb::type_error(("the column '" + name + "' has no numbers").c_str());
     const Buffer<std::byte> bytes(
         owner_of(array), static_cast<const std::byte*>(static_cast<const void*>(array.data())), array.nbytes());
-    return Column(name, scalar_type(array), components, bytes, {}, exponent);
+    return Column(name, scalar_type(array), components, bytes, {});
 }
 
 }  // namespace scanmill::python

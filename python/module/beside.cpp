@@ -6,11 +6,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
-#include <vector>
+#include <utility>
 
 #include "scanmill/base/error.hpp"
 
@@ -36,12 +37,21 @@ struct Shared : Beside {
     std::exception_ptr failure;
 };
 
-/// Threads with work that was left to itself.
-std::vector<std::thread>& leftovers() {
-    static auto* threads = new std::vector<std::thread>;
-    return *threads;
+/// The threads of all work, also of work that was left to itself.
+struct Threads {
+    std::mutex mutex;
+    std::map<const Shared*, std::pair<std::shared_ptr<Shared>, std::thread>> running;
+
+    void start(const std::shared_ptr<Shared>& shared);
+    /// Waits until the work's thread has ended, unless another caller does. Cancels the work first if `cancels`.
+    void finish(const Shared* shared, bool cancels);
+};
+
+/// Never destroyed, because threads may outlive everything else.
+Threads& threads() {
+    static auto* all = new Threads;
+    return *all;
 }
-std::mutex leftovers_mutex;
 
 void perform(const std::shared_ptr<Shared>& shared) {
     try {
@@ -52,7 +62,25 @@ void perform(const std::shared_ptr<Shared>& shared) {
     shared->work = nullptr;
     const std::scoped_lock lock(shared->mutex);
     shared->has_ended = true;
-    shared->ended.notify_one();
+    shared->ended.notify_all();
+}
+
+void Threads::start(const std::shared_ptr<Shared>& shared) {
+    const std::scoped_lock lock(mutex);
+    running.emplace(shared.get(), std::pair(shared, std::thread(perform, shared)));
+}
+
+void Threads::finish(const Shared* shared, bool cancels) {
+    std::thread thread;
+    {
+        const std::scoped_lock lock(mutex);
+        const auto found = running.find(shared);
+        if (found == running.end()) return;
+        if (cancels) found->second.first->is_cancelled = true;
+        thread = std::move(found->second.second);
+        running.erase(found);
+    }
+    thread.join();
 }
 
 }  // namespace
@@ -65,29 +93,36 @@ void require_own_threads() {
         .hint("start processes with multiprocessing.get_context('spawn'), or fork before the first use");
 }
 
-void wait_for_leftovers() {
+void stop_all() {
     const nb::gil_scoped_release released;
-    const std::scoped_lock lock(leftovers_mutex);
-    for (std::thread& thread : leftovers()) thread.join();
-    leftovers().clear();
+    while (true) {
+        const Shared* first = nullptr;
+        {
+            const std::scoped_lock lock(threads().mutex);
+            for (const auto& [shared, work] : threads().running) work.first->is_cancelled = true;
+            if (!threads().running.empty()) first = threads().running.begin()->first;
+        }
+        if (!first) return;
+        threads().finish(first, true);
+    }
 }
 
 void run_beside(std::function<void(Beside&)> work, nb::handle on_progress) {
     const auto shared = std::make_shared<Shared>();
     shared->work = std::move(work);
-    std::thread thread(perform, shared);
+    threads().start(shared);
     std::optional<nb::python_error> interrupt;
-    bool is_over = false;
     {
         const nb::gil_scoped_release released;
         double shown = -1;
         while (true) {
             std::unique_lock lock(shared->mutex);
-            is_over = shared->ended.wait_for(lock, interrupt ? patience_after_cancel : patience,
-                                             [&] { return shared->has_ended; });
+            const bool is_over = shared->ended.wait_for(lock, interrupt ? patience_after_cancel : patience,
+                                                        [&] { return shared->has_ended; });
             lock.unlock();
+            if (is_over) threads().finish(shared.get(), false);
             if (is_over || interrupt) break;
-            const nb::gil_scoped_acquire locked;
+            const nb::gil_scoped_acquire locked;  // does not return if the interpreter is ending
             try {
                 if (PyErr_CheckSignals() != 0) throw nb::python_error();
                 const double progress = shared->progress;
@@ -96,12 +131,6 @@ void run_beside(std::function<void(Beside&)> work, nb::handle on_progress) {
                 interrupt.emplace(std::move(error));
                 shared->is_cancelled = true;
             }
-        }
-        if (is_over) {
-            thread.join();
-        } else {
-            const std::scoped_lock lock(leftovers_mutex);
-            leftovers().push_back(std::move(thread));
         }
     }
     if (interrupt) throw nb::python_error(std::move(*interrupt));

@@ -21,8 +21,8 @@ struct Beside {
 /// left to itself then, so it must own everything that it uses.
 void run_beside(std::function<void(Beside&)> work, nanobind::handle on_progress);
 
-/// Waits for work that was left to itself. To be called before the interpreter ends.
-void wait_for_leftovers();
+/// Cancels all work, also that of other threads, and waits until it has ended. To be called before the interpreter ends.
+void stop_all();
 
 /// Throws Error in a process that was forked after its parent had used threads: those threads are missing here, so work
 /// would wait for them for ever. To be called before any work that may use threads.

@@ -44,7 +44,7 @@ const FilterSpec& spec_of(const FilterLibrary& filters, const std::string& name)
     if (const FilterSpec* spec = filters.find(name)) return *spec;
     for (const UnusableModule& module : filters.unusable())
         if (module.name == name) throw Error("the filter '{}' cannot be used: {}", name, module.reason);
-    throw Error("'{}' is no filter of this installation", name);
+    throw Error("this installation does not have the filter '{}'", name);
 }
 
 using GivenParameters = std::vector<std::tuple<std::string, std::vector<std::string>, bool>>;
@@ -109,6 +109,12 @@ Answer run_here(const Request& request, Beside& beside) {
         answer.report.failure.error = error;
     } catch (const Cancelled&) {
         // the exception that cancelled the work is thrown instead
+    } catch (const std::exception& error) {
+        answer.report.failure.cause = Cause::exception;
+        answer.report.failure.error = Error("{}: an unexpected error: {}", request.step->label, error.what());
+    } catch (...) {
+        answer.report.failure.cause = Cause::exception;
+        answer.report.failure.error = Error("{}: an unexpected error", request.step->label);
     }
     return answer;
 }
@@ -164,17 +170,17 @@ nb::dict described(const Answer& answer) {
     const NodeReport& report = answer.report;
     nb::dict outputs, parameters, result;
     for (const auto& [port, value] : answer.outputs) outputs[port.c_str()] = value;
-    for (const auto& [name, value] : report.resolved.values) parameters[name.c_str()] = text(value);
+    for (const auto& [name, value] : report.resolved.values) parameters[name.c_str()] = readable(text(value));
     nb::list metrics, doubts;
     for (const Metric& metric : report.metrics.values)
         metrics.append(nb::make_tuple(metric.name, metric.value, std::string(name_of(metric.unit))));
-    for (const Doubt& doubt : report.doubts) doubts.append(nb::make_tuple(doubt.text, doubt.port));
+    for (const Doubt& doubt : report.doubts) doubts.append(nb::make_tuple(readable(doubt.text), doubt.port));
     result["outputs"] = outputs;
     result["parameters"] = parameters;
     result["metrics"] = metrics;
     result["unit"] =
         report.metrics.unit == LengthUnit::unknown ? nb::none() : nb::cast(std::string(symbol(report.metrics.unit)));
-    result["warnings"] = report.warnings;
+    result["warnings"] = readable(report.warnings);
     result["doubts"] = doubts;
     result["error"] = report.failure ? exception_of(report.failure.error) : nb::none();
     return result;
@@ -233,7 +239,7 @@ void add_filters(nb::module_& module) {
     module.def("run", &run, nb::arg("filter"), nb::arg("inputs"), nb::arg("parameters"), nb::arg("seed"),
                nb::arg("threads"), nb::arg("on_progress").none(), nb::arg("program").none(), nb::arg("memory_limit"),
                nb::arg("seconds_limit"));
-    module.def("wait_for_leftovers", &wait_for_leftovers);
+    module.def("stop_all", &stop_all);
     module.def("core_library", [] { return core_library_file(); });
 }
 

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "module.hpp"
 
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
-
 namespace scanmill::python {
 
 namespace nb = nanobind;
 
+nb::object readable(const std::string& text) {
+    return nb::bytes(text.data(), text.size()).attr("decode")("utf-8", "replace");
+}
+
+nb::list readable(const std::vector<std::string>& texts) {
+    nb::list list;
+    for (const std::string& text : texts) list.append(readable(text));
+    return list;
+}
+
 nb::object exception_of(const Error& error) {
     return nb::module_::import_("scanmill._errors")
-        .attr("Error")(error.sentence(), error.frames(), error.hint(), static_cast<int>(error.remedy()));
+        .attr("Error")(readable(error.sentence()), readable(error.frames()), readable(error.hint()),
+                       static_cast<int>(error.remedy()));
 }
 
 namespace {

@@ -25,14 +25,14 @@ namespace scanmill::python {
 
 namespace {
 
-using GivenColumns = std::vector<std::tuple<std::string, GivenArray, int>>;
+using GivenColumns = std::vector<std::pair<std::string, GivenArray>>;
 /// Symbol of the unit, origin, name.
 using GivenFrame = std::tuple<std::optional<std::string>, std::array<double, 3>, std::string>;
 
 LengthUnit unit_of(const std::optional<std::string>& symbol) {
     if (!symbol) return LengthUnit::unknown;
     if (const std::optional<LengthUnit> unit = length_unit(*symbol)) return *unit;
-    throw Error("'{}' is no unit of length", *symbol).expected(length_unit_symbols());
+    throw Error("the unit of length is '{}'", *symbol).expected(length_unit_symbols());
 }
 
 Frame frame_from(const GivenFrame& given) {
@@ -48,7 +48,7 @@ nb::tuple frame_tuple(const Value& value) {
 
 ColumnTable columns_from(const GivenColumns& given) {
     ColumnTable columns;
-    for (const auto& [name, array, exponent] : given) columns.add(column_of(name, array, exponent));
+    for (const auto& [name, array] : given) columns.add(column_of(name, array));
     return columns;
 }
 
@@ -126,24 +126,6 @@ nb::dict arrays_of(const Value& value) {
     return arrays;
 }
 
-/// Names of columns, with the exponents that are not zero.
-nb::dict exponents_of(const ColumnTable& columns) {
-    nb::dict exponents;
-    for (const Column& column : columns)
-        if (column.length_exponent() != 0) exponents[column.name().c_str()] = column.length_exponent();
-    return exponents;
-}
-
-nb::dict exponents_of(const Value& value) {
-    nb::dict exponents;
-    if (const PointCloud* cloud = value.find<PointCloud>()) exponents["columns"] = exponents_of(cloud->columns);
-    if (const TriangleMesh* mesh = value.find<TriangleMesh>()) {
-        exponents["vertex-columns"] = exponents_of(mesh->vertex_columns);
-        exponents["face-columns"] = exponents_of(mesh->face_columns);
-    }
-    return exponents;
-}
-
 /// Moves the origin near the positions, as readers do, if they are far from it.
 template <class T>
 std::shared_ptr<const T> near_origin(T object) {
@@ -154,13 +136,43 @@ std::shared_ptr<const T> near_origin(T object) {
 Value points_from(const GivenArray& positions, const GivenColumns& columns, const GivenFrame& frame,
                   const std::string& invalid) {
     PointCloud cloud{frame_from(frame), buffer_of<Vec3>(positions, "positions"), columns_from(columns)};
-    const InvalidRows rule = invalid.empty() ? InvalidRows::by_format : *invalid_rows_named(invalid);
+    const InvalidRows rule = *invalid_rows_named(invalid);
     const nb::gil_scoped_release released;
     try {
         return near_origin(accepted(cloud, rule, false).result);
-    } catch (const Error& error) {  // the sentence has no subject, because readers put the file's name before it
-        throw error.reworded("the array " + error.sentence()).set_hint("invalid='drop' leaves such rows out");
+    } catch (const Error& error) {
+        if (error.remedy() != Remedy::drop_invalid_rows) throw;
+        // The sentence has no subject, because readers put the file's name before it.
+        throw Error("the array " + error.sentence()).hint("invalid='drop' leaves such rows out");
     }
+}
+
+/// The value with other positions, relative to its origin. Columns and frame remain.
+template <class T>
+Value moved(const T& object, const GivenArray& positions) {
+    T other = object;
+    other.positions = buffer_of<Vec3>(positions, "positions");
+    if (other.positions.size() != object.positions.size())
+        throw Error("the value has {} positions; {} were given", object.positions.size(), other.positions.size());
+    const nb::gil_scoped_release released;
+    require_finite(other.positions.span());
+    require_supported_range(bounding_box(other.positions.span()));
+    return near_origin(std::move(other));
+}
+
+Value with_positions(const Value& value, const GivenArray& positions) {
+    if (const PointCloud* cloud = value.find<PointCloud>()) return moved(*cloud, positions);
+    return moved(*value.get<TriangleMesh>(), positions);
+}
+
+/// Throws Error for a value without a declared unit.
+Value converted(const Value& value, const std::string& unit) {
+    const std::optional<Frame> frame = frame_of(value);
+    if (!frame || frame->unit == LengthUnit::unknown)
+        throw Error("the unit of the value is not declared, so it cannot be converted").remedy(Remedy::declare_unit);
+    const LengthUnit wanted = unit_of(unit);
+    const nb::gil_scoped_release released;
+    return in_unit(value, wanted);
 }
 
 Value mesh_from(const GivenArray& positions, const GivenArray& triangles, const GivenColumns& vertex_columns,
@@ -188,19 +200,19 @@ std::optional<std::string> document_of(const Value& value) {
 
 Kind known_kind(const std::string& name) {
     if (const std::optional<Kind> kind = kind_named(name)) return *kind;
-    throw Error("'{}' is no kind", name).expected(kind_names());
+    throw Error("the kind is '{}'", name).expected(kind_names());
 }
 
-std::pair<Value, std::vector<std::string>> value_from(const std::string& kind, const std::string& text) {
+std::pair<Value, nb::list> value_from(const std::string& kind, const std::string& text) {
     std::vector<std::string> warnings;
     const Kind known = known_kind(kind);
     if (!known.has_json()) throw Error("values of the kind '{}' have no form in JSON", kind);
     const auto object = known.info().from_json(parse_document(text),
                                                [&](std::string sentence) { warnings.push_back(std::move(sentence)); });
-    return {Value(known, object), warnings};
+    return {Value(known, object), readable(warnings)};
 }
 
-std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& file,
+std::pair<Value, nb::list> read(const std::filesystem::path& file,
                                                 const std::optional<std::string>& kind,
                                                 const std::optional<std::string>& unit, const std::string& frame,
                                                 const std::string& invalid) {
@@ -221,20 +233,24 @@ std::pair<Value, std::vector<std::string>> read(const std::filesystem::path& fil
             throw Error("'{}' contains {}; expected {}", leaf.name(), result->first.kind().name(), wanted->name());
     };
     run_beside(work, nb::none());
-    return *result;
+    return {result->first, readable(result->second)};
 }
 
-std::vector<std::string> write(const Value& value, const std::filesystem::path& file) {
+nb::list write(const Value& value, const std::filesystem::path& file) {
     require_own_threads();
     const auto warnings = std::make_shared<std::vector<std::string>>();
     WriteOptions options;
     options.on_warning = [warnings](std::string sentence) { warnings->push_back(std::move(sentence)); };
     run_beside([value, file, options](Beside&) { write_file(file, value, options); }, nb::none());
-    return *warnings;
+    return readable(*warnings);
 }
 
 nb::bytes png_of(const Value& value) {
-    const std::string bytes = write_bytes("picture.png", value);
+    std::string bytes;
+    {
+        const nb::gil_scoped_release released;
+        bytes = write_bytes("picture.png", value);
+    }
     return nb::bytes(bytes.data(), bytes.size());
 }
 
@@ -245,13 +261,14 @@ void add_values(nb::module_& module) {
         .def_prop_ro("kind", [](const Value& value) { return std::string(value.kind().name()); })
         .def("frame", &frame_tuple)
         .def("arrays", [](const Value& value) { return arrays_of(value); })
-        .def("exponents", [](const Value& value) { return exponents_of(value); })
+        .def("with_positions", &with_positions)
         .def("document", &document_of)
         .def("properties", [](const Value& value) { return listed(properties_of(value)); })
-        .def("in_unit", [](const Value& value, const std::string& unit) { return in_unit(value, unit_of(unit)); })
+        .def("in_unit", &converted)
         .def("is_same", [](const Value& value, const Value& other) { return value == other; })
         .def("store", [](const Value& value, const std::filesystem::path& file) {
             require_own_threads();
+            const nb::gil_scoped_release released;
             EncodedValue(value).write(file);
         });
     module.def("points", &points_from);

@@ -32,9 +32,8 @@ def _imported(module: str):
     try:
         return import_module(f"scanmill.{module}")
     except ImportError as error:
-        for package, name in (("numpy", "numpy"), ("nanobind-backend", "nanobind_backend")):
-            if error.name == name or name in str(error):
-                raise ImportError(f"the functions of scanmill need the package {package}: pip install {package}") from error
+        if error.name == "numpy" or "nanobind_backend" in str(error):
+            raise ImportError("the functions of scanmill need two more packages: pip install numpy nanobind-backend") from error
         raise
 
 
@@ -56,8 +55,11 @@ def __getattr__(name: str):
         filters = _imported("_filters").filters
         try:
             value = filters[name]
-        except KeyError:
+        except KeyError as error:
             from difflib import get_close_matches
+
+            if "cannot be used" in str(error):
+                raise AttributeError(error.args[0]) from None
 
             near = get_close_matches(name, [*_MODULE_OF, *(each.replace("-", "_") for each in filters)], 1)
             raise AttributeError(f"module 'scanmill' has no attribute '{name}'" + (f"; did you mean '{near[0]}'?" if near else "")) from None

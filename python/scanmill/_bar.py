@@ -8,6 +8,8 @@ from collections.abc import Callable
 
 def bar(name: str) -> tuple[Callable[[float], None], Callable[[], None]]:
     """The function that shows a fraction, and the one that ends the bar."""
+    if sys.stderr is None:
+        return lambda fraction: None, lambda: None
     try:
         from tqdm.auto import tqdm
     except ModuleNotFoundError:

@@ -2,6 +2,8 @@
 """Errors and warnings."""
 from __future__ import annotations
 
+from typing import Any
+
 #: What the caller can do, by the number of the remedy that an error names. Core and engine do not know Python's names.
 _REMEDIES = (
     "",
@@ -34,7 +36,11 @@ class Error(Exception):
         Warnings before the error.
     metrics : Measured
         What the filter measured before the error.
+    run : Run
+        Of run() and batch(): what the run gave, also for other cells.
     """
+
+    run: Any = None
 
     def __init__(self, sentence: str, frames: tuple[str, ...] | list[str] = (), hint: str = "", remedy: int = 0):
         super().__init__("\n  ".join([sentence, *frames]))
@@ -46,12 +52,6 @@ class Error(Exception):
         if self.hint:
             self.add_note(f"hint: {self.hint}")
 
-    def with_text_replaced(self, old: str, new: str) -> Error:
-        """The same error with another text in its sentence and its frames."""
-        error = Error(self.sentence.replace(old, new), [frame.replace(old, new) for frame in self.frames], self.hint)
-        error.__dict__ = {**self.__dict__, **{name: error.__dict__[name] for name in ("sentence", "frames", "__notes__") if name in error.__dict__}}
-        return error
-
     def __reduce__(self):
         return _error_again, (self.sentence, self.frames, self.hint)
 
@@ -61,7 +61,9 @@ def _error_again(sentence: str, frames: tuple[str, ...], hint: str) -> Error:
 
 
 class ScanmillWarning(UserWarning):
-    """A valid but remarkable result, or something that was left out."""
+    """A valid but remarkable result, or something that was left out. `result` has the result that it is about, if there is one."""
+
+    result: Any = None
 
 
 class DoubtWarning(ScanmillWarning):

@@ -79,7 +79,7 @@ class Filter:
         parts += ["Parameters", "----------"]
         for name, port in self.ports.items():
             kind = kind_text(port)
-            parts += entry(name, f"{kind}, optional" if port.get("optional") else kind, port["help"])
+            parts += entry(name, f"{kind}, optional" if port.get("optional") else kind, self._with_python_names(port["help"]))
         for name, spec in self.parameters.items():
             default = default_of(spec)
             form = f"list of {spec['type']}s" if spec.get("list") else spec["type"]
@@ -87,21 +87,21 @@ class Filter:
             text = spec["help"] if spec["type"] == "boolean" else f"{spec['help']} Takes {spec['expects']}."
             for choice in spec.get("choices", []):
                 text += f"\n{choice['name']}: {choice['help']}" if choice.get("help") else ""
-            parts += entry(name, form, text)
+            parts += entry(name, form, self._with_python_names(text))
         for name, (default, form, text) in _CALL.items():
             parts += entry(name, f"{form}, default {default!r}", text)
         first, *others = declared["outputs"]
         parts += ["", "Returns", "-------"]
-        parts += entry("", output_text(first), first["help"])
+        parts += entry("", output_text(first), self._with_python_names(first["help"]))
         if others:
             parts += ["", "Other outputs, by name in `outputs` of the result", "-" * 50]
             for port in others:
-                parts += entry(port["name"], output_text(port), port["help"])
+                parts += entry(port["name"], output_text(port), self._with_python_names(port["help"]))
         if declared["metrics"]:
             parts += ["", "Metrics, in `metrics` of the result", "-" * 35]
             for metric in declared["metrics"]:
                 better = {"larger": " Larger is better.", "smaller": " Smaller is better."}.get(metric.get("better"), "")
-                parts += entry(metric["name"], metric["unit"], metric["help"] + better)
+                parts += entry(metric["name"], metric["unit"], self._with_python_names(metric["help"]) + better)
         parts += ["", "Raises", "------"]
         parts += entry("", "scanmill.Error", "With the reason and what to do.")
         parts += ["", "Notes", "-----"]
@@ -110,16 +110,17 @@ class Filter:
         if declared.get("not-finite"):
             parts += textwrap.wrap(f"NaN and infinity: {declared['not-finite']}", 88)
         for doubt in declared.get("doubts", []):
-            parts += textwrap.wrap(f"The result is doubtful if {doubt}.", 88)
+            parts += textwrap.wrap(f"The result is doubtful if {self._with_python_names(doubt)}.", 88)
         parts += textwrap.wrap("A length is a text such as '0.2 mm', or a number in the scan's own unit.", 88)
-        return self._with_python_names("\n".join(parts))
+        return "\n".join(parts)
 
-    def _with_python_names(self, page: str) -> str:
-        """Names with hyphens become the names that the function has for them. Both are equally long."""
-        for name, spec in (self.ports | self.parameters).items():
-            if "-" in spec["name"]:
-                page = re.sub(rf"(?<![\w-]){re.escape(spec['name'])}(?![\w-])", name, page)
-        return page
+    def _with_python_names(self, text: str) -> str:
+        """Parameters with hyphens get the names that the function has for them. Metrics and columns keep theirs."""
+        own = {metric["name"] for metric in self.declaration["metrics"]} | set(self.declaration.get("adds", []))
+        for name, spec in self.parameters.items():
+            if "-" in spec["name"] and spec["name"] not in own:
+                text = re.sub(rf"(?<![\w-]){re.escape(spec['name'])}(?![\w-])", name, text)
+        return text
 
 
 def entry(name: str, form: str, text: str) -> list[str]:
@@ -197,7 +198,7 @@ def _given_inputs(filter_: Filter, given: Mapping[str, Any]) -> list[tuple[str, 
             raise TypeError(f"{filter_.function}() needs at least one value in `{name}`")
         for item in items:
             if isinstance(item, np.ndarray) and "points" in (port["kind"], *port.get("also", [])):
-                item = Points(item)
+                item = Points(item, copy=True)  # the caller goes on to use the array
             if not isinstance(item, Value) or item.kind not in (port["kind"], *port.get("also", [])):
                 raise TypeError(f"{filter_.function}() takes {kind_text(port)} as `{name}`; it was given {_described(item, port)}")
             inputs.append((port["name"], item._native))
@@ -222,6 +223,20 @@ def _reporter(progress: Any, name: str) -> tuple[Callable[[float], None] | None,
     from ._bar import bar
 
     return bar(name)
+
+
+def _require_options(options: Mapping[str, Any]) -> None:
+    for name in ("seed", "threads", "memory_limit"):
+        value = options[name]
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 0:
+            raise TypeError(f"{name} is {value!r}; expected a whole number of at least 0")
+    seconds = options["time_limit"]
+    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not 0 <= seconds < float("inf"):
+        raise TypeError(f"time_limit is {seconds!r}; expected seconds, or 0 for no limit")
+    if not isinstance(options["isolated"], bool):
+        raise TypeError(f"isolated is {options['isolated']!r}; expected True or False")
+    if not (options["progress"] is None or isinstance(options["progress"], bool) or callable(options["progress"])):
+        raise TypeError(f"progress is {options['progress']!r}; expected a function of one number, True or None")
 
 
 def call(filter_: Filter, *args: Any, **kwargs: Any) -> Any:
@@ -252,6 +267,7 @@ def call(filter_: Filter, *args: Any, **kwargs: Any) -> Any:
         if spec.get("required") and kwargs.get(name) is None:
             raise TypeError(f"{filter_.function}() needs `{name}`: {spec['expects']}")
     inputs = _given_inputs(filter_, given)
+    _require_options(options)
     on_progress, close = _reporter(options["progress"], filter_.name)
     try:
         report = _native.run(
@@ -267,16 +283,18 @@ def call(filter_: Filter, *args: Any, **kwargs: Any) -> Any:
         )
     finally:
         close()
-    for sentence in report["warnings"]:
-        warnings.warn(f"{filter_.name}: {sentence}", ScanmillWarning, stacklevel=3)
-    for doubt, _ in report["doubts"]:
-        warnings.warn(f"{filter_.name}: {doubt}", DoubtWarning, stacklevel=3)
     made = Made(filter_.name, report)
     if report["error"] is not None:
         error: Error = report["error"]
         error.warnings, error.metrics = made.warnings, made.metrics
         raise error
-    return wrap(report["outputs"][filter_.declaration["outputs"][0]["name"]], made)
+    result = wrap(report["outputs"][filter_.declaration["outputs"][0]["name"]], made)
+    for texts, category in ((made.warnings, ScanmillWarning), (made.doubts, DoubtWarning)):
+        for text in texts:
+            warning = category(f"{filter_.name}: {text}")
+            warning.result = result  # where warnings are errors, the result is not lost
+            warnings.warn(warning, stacklevel=3)
+    return result
 
 
 def _function(name: str) -> Callable[..., Any]:
@@ -300,13 +318,13 @@ class Filters(Mapping[str, Callable[..., Any]]):
         self._functions: dict[str, Callable[..., Any]] = {}
 
     def __getitem__(self, name: str) -> Callable[..., Any]:
-        name = re.sub("_", "-", name)
+        if not isinstance(name, str):
+            raise KeyError(name)
+        name = name.replace("_", "-")
         if name not in self._functions:
             if name not in _native.filters():
-                for unusable, reason in _native.unusable():
-                    if unusable == name:
-                        raise Error(f"the filter '{name}' cannot be used: {reason}")
-                raise KeyError(name)
+                reasons = dict(_native.unusable())
+                raise KeyError(f"the filter '{name}' cannot be used: {reasons[name]}" if name in reasons else name)
             self._functions[name] = _function(name)
         return self._functions[name]
 

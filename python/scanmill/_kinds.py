@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import atexit
 import json
+import math
 import os
 import tempfile
 import warnings as python_warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from ._errors import ScanmillWarning
 
 Columns = Mapping[str, Any]
 
-atexit.register(_native.wait_for_leftovers)
+atexit.register(_native.stop_all)
 
 
 def _shared(given: Any, name: str, type_: Any, shape: tuple[int | None, ...], copy: bool) -> np.ndarray:
@@ -28,6 +29,7 @@ def _shared(given: Any, name: str, type_: Any, shape: tuple[int | None, ...], co
     if isinstance(given, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array, and values have no mask; take the rows you want: array[~mask.any(axis=1)].data")
     array = np.asarray(given)
+    is_index = type_ is not None and np.dtype(type_).kind == "u"
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{name} has the type {array.dtype}; expected numbers")
     if array.ndim != len(shape) or any(want is not None and want != have for want, have in zip(shape, array.shape)):
@@ -37,10 +39,12 @@ def _shared(given: Any, name: str, type_: Any, shape: tuple[int | None, ...], co
         type_ = {"b": np.uint8}.get(array.dtype.kind, array.dtype.newbyteorder("="))
         if array.dtype.kind == "f" and array.dtype.itemsize not in (4, 8):
             type_ = np.float64 if array.dtype.itemsize > 8 else np.float32
-    elif np.dtype(type_).kind in "iu":
+    elif is_index:
         _require_indices(array, name, type_)
     right = np.require(array, type_, ["C_CONTIGUOUS", "ALIGNED"])
-    if right is array and (copy or _others_may_write(right)):
+    shares = right is array or right.base is not None and np.may_share_memory(right, array)
+    # A wrong index would be read beyond the end of an array, so indices that anybody can write are always copied.
+    if shares and (copy or right is not array or _others_may_write(right) or (is_index and right.flags.writeable)):
         right = right.copy()
     right.flags.writeable = False
     return right
@@ -67,18 +71,25 @@ def _others_may_write(array: np.ndarray) -> bool:
     return False
 
 
-def _columns(given: Columns | None, rows: int, copy: bool) -> list[tuple[str, np.ndarray, int]]:
+def _columns(given: Columns | None, rows: int, copy: bool) -> list[tuple[str, np.ndarray]]:
     listed = []
     for name, column in (given or {}).items():
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a column is {name!r}; expected a text")
         shape = np.shape(column)
         if isinstance(column, tuple) or len(shape) not in (1, 2) or shape[0] != rows:
             raise TypeError(f"the column '{name}' has the shape {shape}; expected {rows} rows, with one or more numbers each")
-        listed.append((name, _shared(column, f"the column '{name}'", None, tuple(None for _ in shape), copy), 0))
+        listed.append((name, _shared(column, f"the column '{name}'", None, tuple(None for _ in shape), copy)))
     return listed
 
 
 def _frame(unit: str | None, origin: Any, frame: str) -> tuple[str | None, tuple[float, float, float], str]:
     x, y, z = (float(number) for number in origin)
+    if not all(map(math.isfinite, (x, y, z))):
+        raise ValueError(f"the origin is {(x, y, z)}; expected three finite numbers")
+    for name, text in (("unit", unit or ""), ("frame", frame)):
+        if not isinstance(text, str):
+            raise TypeError(f"{name} is {text!r}; expected a text")
     return unit, (x, y, z), frame
 
 
@@ -128,7 +139,10 @@ class Value:
         Its parameters as it got them: lengths in the scan's unit.
     """
 
-    def __init__(self, native: _native.Value, made: Made | None = None):
+    def __init__(self, *args: Any, **kwargs: Any):
+        raise TypeError(f"{type(self).__name__} cannot be made of arrays; filters, read() and from_document() give it")
+
+    def _hold(self, native: Any, made: Made | None = None) -> None:
         self._native = native
         self._made = made or Made()
 
@@ -149,7 +163,7 @@ class Value:
         return self._native.frame()[2]
 
     @property
-    def outputs(self) -> dict[str, Value]:
+    def outputs(self) -> dict[str, Any]:
         return {port: self if native.is_same(self._native) else wrap(native, self._made) for port, native in self._made.values.items()}
 
     @property
@@ -173,7 +187,7 @@ class Value:
         """Counts and topology: triangles, components, genus …"""
         return Measured(self._native.properties(), self.unit)
 
-    def in_unit(self, unit: str) -> Value:
+    def in_unit(self, unit: str) -> Any:
         """The same geometry in another unit: positions and all other lengths are converted."""
         return wrap(self._native.in_unit(unit))
 
@@ -207,6 +221,12 @@ class Value:
     def __repr__(self) -> str:
         return f"<scanmill.{type(self).__name__}: {self._what()}{', ' + self.unit if self.unit else ''}>"
 
+    def __copy__(self) -> Value:
+        return self  # values never change
+
+    def __deepcopy__(self, _: Any) -> Value:
+        return self
+
     def __reduce__(self):
         """Pickles the value, without how it was made."""
         with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as folder:
@@ -222,6 +242,20 @@ def _unpickled(content: bytes) -> Value:
         return wrap(_native.stored(file.name))
 
 
+class _Document(Value):
+    """A kind that is one document."""
+
+    _kind: str
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> Any:
+        """The value of a document, as document() gives it."""
+        native, sentences = _native.value(cls._kind, json.dumps(document))
+        for sentence in sentences:
+            python_warnings.warn(sentence, ScanmillWarning, stacklevel=2)
+        return wrap(native)
+
+
 class _Positions(Value):
     @property
     def positions(self) -> np.ndarray:
@@ -233,6 +267,9 @@ class _Positions(Value):
         """n × 3 coordinates: `origin` + `positions`."""
         origin = self.origin
         return self.positions if origin == (0, 0, 0) else self.positions + np.array(origin)
+
+    def _with_positions(self, positions: Any, copy: bool) -> Any:
+        return wrap(self._native.with_positions(_shared(positions, "positions", np.float64, (None, 3), copy)))
 
 
 class Points(_Positions):
@@ -268,7 +305,7 @@ class Points(_Positions):
         if invalid not in ("drop", "refuse"):
             raise ValueError(f"invalid is {invalid!r}; expected 'drop' or 'refuse'")
         rows = _shared(positions, "positions", np.float64, (None, 3), copy)
-        super().__init__(_native.points(rows, _columns(columns, len(rows), copy), _frame(unit, origin, frame), invalid))
+        self._hold(_native.points(rows, _columns(columns, len(rows), copy), _frame(unit, origin, frame), invalid))
 
     @property
     def columns(self) -> dict[str, np.ndarray]:
@@ -277,6 +314,10 @@ class Points(_Positions):
 
     def __len__(self) -> int:
         return len(self.positions)
+
+    def with_positions(self, positions: Any, *, copy: bool = False) -> Points:
+        """The same points with other positions, relative to `origin`. Columns keep their rows and their units of length."""
+        return self._with_positions(positions, copy)
 
     def _what(self) -> str:
         return f"{len(self):,} points"
@@ -314,7 +355,7 @@ class Mesh(_Positions):
         faces = _shared(triangles, "triangles", np.uint32, (None, 3), copy)
         edges = np.zeros((0, 2), np.uint32) if sharp_edges is None else np.unique(np.sort(_shared(sharp_edges, "sharp_edges", np.uint32, (None, 2), copy)), axis=0)
         edges = _shared(edges, "sharp_edges", np.uint32, (None, 2), True)
-        super().__init__(
+        self._hold(
             _native.mesh(
                 rows,
                 faces,
@@ -356,6 +397,10 @@ class Mesh(_Positions):
         from ._others import to_trimesh
 
         return to_trimesh(self)
+
+    def with_positions(self, positions: Any, *, copy: bool = False) -> Mesh:
+        """The same mesh with other positions, relative to `origin`. Columns keep their rows and their units of length."""
+        return self._with_positions(positions, copy)
 
     def _what(self) -> str:
         return f"{len(self.positions):,} vertices, {len(self.triangles):,} triangles"
@@ -412,8 +457,10 @@ class Line:
         return f"<scanmill.Line: {self.type}, {'closed' if self.closed else 'open'}, {len(self.vertices)} vertices>"
 
 
-class Features(_Positions):
+class Features(_Positions, _Document):
     """Boundaries and sharp edges of a mesh as lines, with their corners."""
+
+    _kind = "features"
 
     @property
     def vertices(self) -> np.ndarray:
@@ -442,8 +489,10 @@ class Features(_Positions):
         return f"{len(self._array('polylines')):,} lines, {len(self.corners):,} corners"
 
 
-class Patches(_Positions):
+class Patches(_Positions, _Document):
     """A smooth surface: the zero set of one cubic polynomial per tetrahedron."""
+
+    _kind = "patches"
 
     @property
     def tets(self) -> np.ndarray:
@@ -458,25 +507,10 @@ class Patches(_Positions):
         return f"{len(self.tets):,} patches"
 
 
-class _Document(Value):
-    """A kind that is one document."""
-
-    @classmethod
-    def from_document(cls, document: Mapping[str, Any]):
-        """The value of a document, as document() gives it."""
-        kind = next(name for name, each in KINDS.items() if each is cls)
-        native, sentences = _native.value(kind, json.dumps(document))
-        for sentence in sentences:
-            python_warnings.warn(sentence, ScanmillWarning, stacklevel=2)
-        return cls._wrapped(native)
-
-    @classmethod
-    def _wrapped(cls, native: _native.Value):
-        return wrap(native)
-
-
 class Probes(_Document):
     """Where a touch probe measures the edges of a part: touches and moves."""
+
+    _kind = "probes"
 
     @property
     def touches(self) -> list[dict[str, Any]]:
@@ -491,7 +525,28 @@ class Probes(_Document):
 
 
 class Transforms(_Document):
-    """Rigid motions, each from a frame to a frame. Iterates over 4 × 4 matrices, which move world positions."""
+    """Rigid motions, each from a frame to a frame. Iterates over 4 × 4 matrices, which move world positions.
+
+    Parameters
+    ----------
+    matrices : 4 × 4 or n × 4 × 4 numbers
+        Rotation and translation.
+    names : list of pairs of str, optional
+        The frames from which and to which each motion leads; a text may be empty.
+    unit : str, optional
+        Unit of the translations.
+    """
+
+    _kind = "transform"
+
+    def __init__(self, matrices: Any, names: Sequence[tuple[str, str]] | None = None, *, unit: str | None = None):
+        poses = np.asarray(matrices, np.float64).reshape(-1, 4, 4).tolist()
+        frames = names or [("", "")] * len(poses)
+        if len(frames) != len(poses):
+            raise ValueError(f"names has {len(frames)} pairs; expected {len(poses)}, one per matrix")
+        named = [{"matrix": matrix, **{key: text for key, text in (("from", old), ("to", new)) if text}} for matrix, (old, new) in zip(poses, frames)]
+        document: dict[str, Any] = {"scanmill": 1, **({"unit": unit} if unit else {}), "poses": named}
+        self._hold(_native.value("transform", json.dumps(document))[0])
 
     @property
     def matrices(self) -> np.ndarray:
@@ -515,6 +570,8 @@ class Transforms(_Document):
 
 class Metrics(_Document):
     """Named numbers, as an output of a filter. `values` has them as a dict."""
+
+    _kind = "metrics"
 
     @property
     def values(self) -> Measured:
@@ -564,5 +621,5 @@ KINDS: dict[str, type[Value]] = {
 def wrap(native: _native.Value, made: Made | None = None) -> Any:
     """The value as an object of its kind's class. Kinds of other people's modules are plain values."""
     value = object.__new__(KINDS.get(native.kind, Value))
-    Value.__init__(value, native, made)
+    value._hold(native, made)
     return value

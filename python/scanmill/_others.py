@@ -25,15 +25,28 @@ def _require(value: Any, *kinds: type[Value]) -> None:
         raise TypeError(f"expected {' or '.join(kind.__name__ for kind in kinds)}; it was given {type(value).__name__}")
 
 
+def _copies(columns: dict[str, Any]) -> dict[str, np.ndarray]:
+    """The columns with numbers in every row. Other packages change their arrays, so they get copies."""
+    return {name: np.array(column) for name, column in columns.items() if not isinstance(column, tuple)}
+
+
 def to_trimesh(value: Mesh | Points) -> Any:
-    """A trimesh.Trimesh or trimesh.PointCloud, in world coordinates. Triangles keep their order; columns become attributes."""
+    """A trimesh.Trimesh or trimesh.PointCloud, in world coordinates. Triangles keep their order;
+    normals and colours are the mesh's own, other columns become attributes."""
     trimesh = _imported("trimesh")
     _require(value, Mesh, Points)
     if isinstance(value, Points):
-        return trimesh.PointCloud(value.world_positions, colors=value.columns.get("colour"))
-    plain = {name: column for name, column in value.vertex_columns.items() if not isinstance(column, tuple)}
-    faces = {name: column for name, column in value.face_columns.items() if not isinstance(column, tuple)}
-    mesh = trimesh.Trimesh(value.world_positions, value.triangles.astype(np.int64), vertex_attributes=plain, face_attributes=faces, process=False)
+        return trimesh.PointCloud(np.array(value.world_positions), colors=_copies(value.columns).get("colour"))
+    columns = _copies(value.vertex_columns)
+    mesh = trimesh.Trimesh(
+        np.array(value.world_positions),
+        value.triangles.astype(np.int64),
+        vertex_normals=columns.pop("normal", None),
+        vertex_colors=columns.pop("colour", None),
+        vertex_attributes=columns,
+        face_attributes=_copies(value.face_columns),
+        process=False,
+    )
     mesh.units = value.unit
     return mesh
 
@@ -47,10 +60,13 @@ def from_trimesh(mesh: Any, *, unit: str | None = None) -> Mesh | Points:
     if not isinstance(mesh, trimesh.Trimesh):
         raise TypeError(f"expected a trimesh.Trimesh or trimesh.PointCloud; it was given {type(mesh).__name__}")
     known = {"mm": "mm", "millimeters": "mm", "cm": "cm", "m": "m", "meters": "m", "in": "in", "inches": "in", "feet": "ft", "ft": "ft", "um": "um"}
+    columns = {name: np.asarray(column) for name, column in mesh.vertex_attributes.items()}
+    if mesh.visual.kind == "vertex":
+        columns["colour"] = np.asarray(mesh.visual.vertex_colors, np.uint8)
     return Mesh(
         np.asarray(mesh.vertices),
         np.asarray(mesh.faces),
-        vertex_columns={name: np.asarray(column) for name, column in mesh.vertex_attributes.items()},
+        vertex_columns=columns,
         face_columns={name: np.asarray(column) for name, column in mesh.face_attributes.items()},
         unit=unit or known.get(mesh.units),
     )
@@ -105,26 +121,24 @@ def to_pyvista(value: Value) -> Any:
     _require(value, Points, Mesh, Tets, Features)
     if isinstance(value, Tets):
         cells = np.column_stack([np.full(len(value.cells), 4), value.cells.astype(np.int64)])
-        grid = pyvista.UnstructuredGrid(cells.ravel(), np.full(len(value.cells), pyvista.CellType.TETRA, np.uint8), value.world_positions)
+        grid = pyvista.UnstructuredGrid(cells.ravel(), np.full(len(value.cells), pyvista.CellType.TETRA, np.uint8), np.array(value.world_positions))
         if value.inside is not None:
-            grid.cell_data["inside"] = value.inside
+            grid.cell_data["inside"] = np.array(value.inside)
         return grid
     if isinstance(value, Features):
         loops = [np.append(line.vertices, line.vertices[:1]) if line.closed else line.vertices for line in value.lines]
         cells = np.concatenate([np.concatenate([[len(loop)], loop]) for loop in loops]).astype(np.int64) if loops else np.zeros(0, np.int64)
-        made = pyvista.PolyData(value.world_positions, lines=cells)
+        made = pyvista.PolyData(np.array(value.world_positions), lines=cells)
         made.cell_data["type"] = [line.type for line in value.lines]
         return made
     if isinstance(value, Points):
-        made = pyvista.PolyData(value.world_positions)
+        made = pyvista.PolyData(np.array(value.world_positions))
         columns = value.columns
     else:
-        made = pyvista.PolyData.from_regular_faces(value.world_positions, value.triangles.astype(np.int64))
+        made = pyvista.PolyData.from_regular_faces(np.array(value.world_positions), value.triangles.astype(np.int64))
         columns = value.vertex_columns
-        for name, column in value.face_columns.items():
-            if not isinstance(column, tuple):
-                made.cell_data[name] = column
-    for name, column in columns.items():
-        if not isinstance(column, tuple):
-            made.point_data[name] = column
+        for name, column in _copies(value.face_columns).items():
+            made.cell_data[name] = column
+    for name, column in _copies(columns).items():
+        made.point_data[name] = column
     return made

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import signal
 import subprocess
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
@@ -176,23 +174,23 @@ def run(
     -------
     Run
     """
-    with ExitStack() as stack:
-        words = ["run", stack.enter_context(_workflow(workflow, "workflow"))]
-        given: dict[str, Any] = dict(inputs or {})
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="scanmill-")))
-        words += _files(scans, folder, "scan")
-        for name, values in given.items():
-            words += ["--in", f"{name}={','.join(_files(values, folder, name))}"]
-        for name, value in (parameters or {}).items():
-            words += ["--set", f"{name.replace('_', '-')}={_text(value)}"]
-        for option, value in (("--unit", unit), ("--invalid", invalid), ("--until", until)):
-            words += [option, value] if value else []
-        for option, values in (("--only", only), ("--save", save)):
-            for value in [values] if isinstance(values, str) else values:
-                words += [option, value]
-        words += ["--picture"] if picture else []
-        words += ["--events", *_common(output, jobs, threads, seed, cache, strict)]
-        return _execute(words, output, check, progress, on_event)
+    name, text = _workflow(workflow, "workflow")
+    words = ["run", name, *_files(scans, Path(output), "scan")]
+    for name, values in (inputs or {}).items():
+        files = _files(values, Path(output), name)
+        if any("," in file for file in files):
+            raise ValueError(f"a file of the input '{name}' has a comma in its name, which separates files: {files}")
+        words += ["--in", f"{name}={','.join(files)}"]
+    for name, value in (parameters or {}).items():
+        words += ["--set", f"{name}={_text(value)}"]
+    for option, value in (("--unit", unit), ("--invalid", invalid), ("--until", until)):
+        words += [option, value] if value else []
+    for option, values in (("--only", only), ("--save", save)):
+        for value in [values] if isinstance(values, str) else values:
+            words += [option, value]
+    words += ["--picture"] if picture else []
+    words += ["--events", *_common(output, jobs, threads, seed, cache, strict)]
+    return _execute(words, text, output, check, progress, on_event)
 
 
 def batch(
@@ -217,59 +215,67 @@ def batch(
     working folder. `scans`, `workflows` and `only` run a part of it. Failed cells raise no error unless `check` is true:
     see Run.ok and Run.verdict. The other parameters are those of run().
     """
-    with ExitStack() as stack:
-        words = ["batch", stack.enter_context(_workflow(file, "batch"))]
-        for option, values in (("--scan", scans), ("--workflow", workflows), ("--only", only)):
-            for value in [values] if isinstance(values, (str, os.PathLike)) else values:
-                words += [option, os.fspath(value)]
-        words += ["--json", *_common(output, jobs, threads, seed, cache, strict)]
-        return _execute(words, output, check, progress, on_event)
+    name, text = _workflow(file, "batch")
+    words = ["batch", name]
+    for option, values in (("--scan", scans), ("--workflow", workflows), ("--only", only)):
+        for value in [values] if isinstance(values, (str, os.PathLike)) else values:
+            words += [option, os.fspath(value)]
+    words += ["--json", *_common(output, jobs, threads, seed, cache, strict)]
+    return _execute(words, text, output, check, progress, on_event)
 
 
 def _common(output: Any, jobs: int | None, threads: int, seed: int, cache: Any, strict: bool) -> list[str]:
-    words = ["-q", "-o", os.fspath(output), "--threads", str(threads), "--seed", str(seed)]
+    words = ["-q", "--stop-with-parent", "-o", os.fspath(output), "--threads", str(threads), "--seed", str(seed)]
     words += ["-j", str(jobs)] if jobs is not None else []
     words += ["--no-cache"] if cache is False else [] if cache is True else ["--cache", os.fspath(cache)]
     return words + (["--strict"] if strict else [])
 
 
-@contextmanager
-def _workflow(given: Any, noun: str) -> Iterator[str]:
-    """The file's name. Text and dicts become a file in the working folder, from which their relative paths count."""
+def _workflow(given: Any, noun: str) -> tuple[str, str | None]:
+    """The argument of the command, and the text for its standard input if the workflow or batch is not a file."""
     if isinstance(given, os.PathLike) or (isinstance(given, str) and "\n" not in given):
-        yield os.fspath(given)
-        return
-    name = "name" if noun == "workflow" else "batch"
+        return _plain(os.fspath(given)), None
+    if isinstance(given, str):
+        return "-", given
     if isinstance(given, Mapping):
-        text = json.dumps({name: noun, **given}, indent=1)
-    elif isinstance(given, str):
-        text = given if re.search(rf"^{name}\s*:", given, re.MULTILINE) else f"{given}\n{name}: {noun}\n"
-    else:
-        raise TypeError(f"the {noun} is {type(given).__name__}; expected a file, a name, a text or a dict")
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=".", prefix=f"{noun}-", suffix=".yaml") as file:
-        file.write(text)
-        file.flush()
-        name = os.path.basename(file.name)
-        try:
-            yield name
-        except Error as error:  # the caller does not know the file
-            raise error.with_text_replaced(f"'{name}'", f"the {noun}").with_text_replaced(name, noun) from None
+        named = given if noun == "workflow" else {"batch": noun, **given}
+        return "-", json.dumps(named, indent=1, default=_number)
+    raise TypeError(f"the {noun} is {type(given).__name__}; expected a file, a name, a text or a dict")
 
 
-def _files(given: Any, folder: Path, name: str) -> list[str]:
-    """The names of files; values are written to files."""
-    items = list(given) if isinstance(given, (list, tuple)) else [given]
+def _number(value: Any) -> Any:
+    """Numbers and arrays of NumPy, and paths, as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"{value!r} has no form in a workflow")
+
+
+def _plain(file: str) -> str:
+    """The file's name, which must not look like an option."""
+    return f"./{file}" if file.startswith("-") else file
+
+
+def _files(given: Any, output: Path, name: str) -> list[str]:
+    """The names of files. Values are written to the folder `inputs` of the output folder. Their names do not depend on the run,
+    so that runs can be compared."""
+    items = [given] if isinstance(given, (str, os.PathLike, Value)) else given
+    if not isinstance(items, Iterable):
+        raise TypeError(f"'{name}' is {type(given).__name__}; expected a file or a value such as Points")
     files = []
+    items = list(items)
     for item in items:
         if isinstance(item, Value):
             extension = "ply" if item.kind in ("points", "mesh") else "json"
             if not _native.can_write(extension, item.kind):
                 raise TypeError(f"a workflow cannot take {type(item).__name__} as '{name}'")
-            item_file = folder / f"{name}{'' if len(items) == 1 else f'-{len(files) + 1}'}.{extension}"
-            item.write(item_file)
-            files.append(str(item_file))
+            file = output / "inputs" / f"{name}{'' if len(items) == 1 else f'-{len(files) + 1}'}.{extension}"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            item.write(file)
+            files.append(_plain(str(file)))
         elif isinstance(item, (str, os.PathLike)):
-            files.append(os.fspath(item))
+            files.append(_plain(os.fspath(item)))
         else:
             raise TypeError(f"'{name}' is {type(item).__name__}; expected a file or a value such as Points")
     return files
@@ -304,6 +310,7 @@ class _Collector:
         self.total = 0
         self.percents: dict[int, int] = {}
         self.error: Error | None = None
+        self.has_ended = False
 
     def fraction(self) -> float:
         return min(1.0, sum(self.percents.values()) / (100 * self.total)) if self.total else 0.0
@@ -313,7 +320,7 @@ class _Collector:
         if name is None:
             self.error = _error(event)
         elif name == "run-started":
-            self.run.name, self.run.number, self.total = event["name"], event["run"], event["steps"]
+            self.run.name, self.run.number, self.total = event["name"], event.get("run", 0), event["steps"]
         elif name == "step-progress":
             self.percents[event["node"]] = event["percent"]
         elif name == "step-ended":
@@ -352,9 +359,10 @@ class _Collector:
             self.run.verdict = {key: value for key, value in event.items() if key not in ("event", "at")}
         elif name == "run-ended":
             self.run.interrupted = event["interrupted"]
+            self.has_ended = True
 
 
-def _execute(words: list[str], folder: Any, check: bool, progress: Any, on_event: Any) -> Run:
+def _execute(words: list[str], text: str | None, folder: Any, check: bool, progress: Any, on_event: Any) -> Run:
     collector, shown = _Collector(folder), -1.0
     if progress is True:
         from ._bar import bar
@@ -363,8 +371,14 @@ def _execute(words: list[str], folder: Any, check: bool, progress: Any, on_event
     else:
         close = None
     try:
-        with tempfile.TemporaryFile() as errors:
-            process = subprocess.Popen([program(), *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors, start_new_session=True)
+        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as errors:
+            given.write((text or "").encode())
+            given.seek(0)
+            # A session of its own, so that Ctrl-C reaches the program once, from here.
+            process = subprocess.Popen(
+                [program(), *words], stdin=given, stdout=subprocess.PIPE, stderr=errors, start_new_session=True
+            )
+            assert process.stdout
             try:
                 for line in process.stdout:
                     event = json.loads(line)
@@ -388,41 +402,51 @@ def _execute(words: list[str], folder: Any, check: bool, progress: Any, on_event
     result.exit_code = code
     if code == 130:
         raise KeyboardInterrupt
-    if code not in (0, 1, 4) or not result.name:
-        raise collector.error or Error(printed or f"the program ended with code {code}")
-    _warn(collector)
+    if not collector.has_ended:
+        raise collector.error or (_printed_error(printed) if printed else Error(f"the program ended with code {code}"))
     failed = [cell for cell in result.cells if cell.outcome == "failed"]
     if check and failed:
-        first = failed[0]
-        others = f"; {len(failed) - 1} more of {len(result.cells)} cells failed" if len(failed) > 1 else ""
-        sentence, *frames = first.error.split("\n")
-        hint = next((line.removeprefix("hint: ") for line in frames if line.startswith("hint: ")), "")
-        error = Error(sentence + others, [line.strip() for line in frames if not line.startswith("hint: ")], hint)
+        error = _printed_error(failed[0].error)
+        if len(failed) > 1:
+            error = Error(f"{error.sentence}; {len(failed) - 1} more of {len(result.cells)} cells failed", error.frames, error.hint)
         error.run = result
         raise error
+    _warn(collector, printed)
     return result
 
 
+def _printed_error(printed: str) -> Error:
+    """The error in a text of the program: a sentence, frames and a hint, a line each."""
+    sentence, *lines = printed.removeprefix("error: ").split("\n")
+    hint = next((line.removeprefix("hint: ") for line in lines if line.startswith("hint: ")), "")
+    return Error(sentence, [line.strip() for line in lines if not line.startswith("hint: ")], hint)
+
+
 def _stop(process: subprocess.Popen) -> None:
-    """Lets the run stop in an orderly way; kills it if that takes too long."""
+    """Lets the run stop in an orderly way. Kills it if that takes too long, or if the caller does not wait for it."""
     process.send_signal(signal.SIGINT)
     try:
         process.communicate(timeout=_PATIENCE)
-    except subprocess.TimeoutExpired:
+    except BaseException as error:
         os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
+        process.wait()
+        if not isinstance(error, subprocess.TimeoutExpired):
+            raise
 
 
-def _warn(collector: _Collector) -> None:
-    """Warns of what the steps, the files and the cells report: each sentence once."""
+def _warn(collector: _Collector, printed: str) -> None:
+    """Warns of what the program, the steps, the files and the cells report: each sentence once."""
     seen: set[str] = set()
 
-    def warn(sentence: str, category: type[Warning]) -> None:
+    def warn(sentence: str, category: type[ScanmillWarning]) -> None:
         if sentence not in seen:
             seen.add(sentence)
-            warnings.warn(sentence, category, stacklevel=5)
+            warning = category(sentence)
+            warning.result = collector.run  # where warnings are errors, the result is not lost
+            warnings.warn(warning, stacklevel=5)
 
     for step in collector.steps.values():
+        seen.update(step.warnings)
         for sentence in step.warnings:
             warn(f"{step.name}: {sentence}", ScanmillWarning)
     for cell in collector.run.cells:
@@ -431,3 +455,6 @@ def _warn(collector: _Collector) -> None:
                 warn(sentence, ScanmillWarning)
         for doubt in cell.doubts:
             warn(f"{cell.scan}, {cell.variant}: {doubt}", DoubtWarning)
+    for line in printed.split("\n"):
+        if line.startswith("warning: ") and not any(line.endswith(sentence) for sentence in seen):
+            warn(line.removeprefix("warning: "), ScanmillWarning)

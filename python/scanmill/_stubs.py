@@ -18,7 +18,7 @@ _CALL_TYPES = {"progress": "Callable[[float], None] | bool | None", "seed": "int
 _HEAD = '''\
 # Written by python -m scanmill._stubs.
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -30,7 +30,7 @@ def _port_type(port: dict) -> str:
     kinds = [port["kind"], *port.get("also", [])]
     names = [class_name(kind) for kind in kinds] + (["np.ndarray"] if "points" in kinds else [])
     one = " | ".join(names)
-    text = f"list[{one}] | {one}" if port.get("list") else one
+    text = f"Sequence[{one}] | {one}" if port.get("list") else one
     return f"{text} | None" if port.get("optional") else text
 
 
@@ -41,7 +41,7 @@ def _parameter_type(spec: dict) -> str:
         one = _TYPES[spec["type"]]
     if spec.get("word"):
         one = one if "str" in one.split(" | ") else f"{one} | Literal[{spec['word']!r}]"
-    text = f"list[{one}]" if spec.get("list") else one
+    text = f"Sequence[{one}]" if spec.get("list") else one
     if spec.get("list") and spec.get("word"):
         text += f" | Literal[{spec['word']!r}]"
     return text if spec.get("required") else f"{text} | None"
@@ -63,7 +63,7 @@ def _stub(name: str, function: Callable) -> str:
             type_ = _CALL_TYPES[own]
         parts.append(f"{own}: {type_}" + ("" if parameter.default is inspect.Parameter.empty else f" = {parameter.default!r}"))
     output = filter_.declaration["outputs"][0]
-    result = "Value" if output.get("like") else class_name(output["kind"])
+    result = "Any" if output.get("like") else class_name(output["kind"])
     page = textwrap.indent(filter_.page().replace("\\", "\\\\"), "    ").strip()
     return f'def {filter_.function}({", ".join(parts)}) -> {result}:\n    """{page}\n    """\n    ...\n'
 

@@ -2,10 +2,13 @@
 // The commands `run` and `batch`: make a graph from the command line, run it, and print the report.
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 
 #include <algorithm>
 #include <charconv>
 #include <csignal>
+#include <iostream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -41,7 +44,7 @@ struct ExecuteOptions {
     CacheOptions cache;
     std::uint64_t seed = 0;
     bool no_cache = false, strict = false, dry_run = false, json = false, has_events = false, quiet = false,
-         is_wide = false;
+         is_wide = false, ends_with_parent = false;
     std::filesystem::path html;  ///< batches only
 };
 
@@ -74,7 +77,8 @@ void on_interrupt(int signal) {
 }
 
 /// A signal stops the run in an orderly way. A signal that is ignored, such as SIGHUP under nohup, stays ignored.
-void handle_interrupts() {
+void handle_interrupts(bool ends_with_parent) {
+    if (ends_with_parent) ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
@@ -104,6 +108,20 @@ std::string folder_error(const std::string& folder) {
         if (part == part.parent_path()) break;
     }
     return {};
+}
+
+/// The file of a workflow or batch, and its text.
+struct Source {
+    std::string file, text;
+};
+
+/// "-" is the text on standard input. It has no file; relative paths count from the working folder, and `noun` is its
+/// name, as if that were its file.
+Source source_of(const std::string& file_or_name, const char* noun) {
+    if (file_or_name == "-")
+        return {noun, std::string(std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>())};
+    const std::string file = workflow_file(file_or_name, print_warning);
+    return {file, read_workflow_file(file)};
 }
 
 void add_execute_options(CLI::App& command, ExecuteOptions& options) {
@@ -146,6 +164,8 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, then stop");
     command.add_flag("-q,--quiet", options.quiet, "Print no progress on stderr");
+    command.add_flag("--stop-with-parent", options.ends_with_parent,
+                     "Stop as after Ctrl-C when the program ends that started this one");
     command.add_flag("--wide", options.is_wide,
                      "Print every headline metric of every step and every file, however wide the table gets");
 }
@@ -251,7 +271,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     }
 
     std::signal(SIGPIPE, SIG_IGN);  // a closed stdout does not end the run
-    handle_interrupts();
+    handle_interrupts(options_.ends_with_parent);
     const unsigned jobs = session_.jobs(graph);
     Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.gate.repeats);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
@@ -364,8 +384,7 @@ ScanFile scan_file(const ObjectFolder& object, const Refusal& refusal) {
 
 int run_workflow(const RunOptions& options) {
     Execution execution(options.execute);
-    const std::string workflow = workflow_file(options.workflow, print_warning);
-    const std::string text = read_workflow_file(workflow);
+    const auto [workflow, text] = source_of(options.workflow, "workflow");
     if (is_batch(text))
         throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + options.workflow);
     Settings settings = parse_settings(options.settings);
@@ -487,8 +506,7 @@ int print_status(const std::filesystem::path& folder, bool json) {
 
 int run_batch(const BatchOptions& options) {
     if (options.is_status) return print_status(options.file, options.execute.json);
-    const std::string batch_file = workflow_file(options.file, print_warning);
-    const std::string text = read_workflow_file(batch_file);
+    const auto [batch_file, text] = source_of(options.file, "batch");
     if (!is_batch(text))
         throw Error("'{}' is not a batch: it has no key `batch`", batch_file)
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
@@ -534,7 +552,7 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     auto [run, options] =
         add_command<RunOptions>(app, chosen, "run", "Runs a workflow over one scan or many", run_workflow);
     run.add_option("WORKFLOW", options.workflow,
-                   "The workflow file, or the name of a ready one, such as bernardini-1997")
+                   "The workflow file, or the name of a ready one, such as bernardini-1997; `-` reads standard input")
         ->required();
     run.add_option("SCAN", options.scans,
                    "Files for the workflow's first input: one run each, or one run for all if that input is a list. "
@@ -562,7 +580,7 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
 
     auto [batch, batch_options] = add_command<BatchOptions>(
         app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);
-    batch.add_option("FILE", batch_options.file, "The batch file, or the name of a ready one, such as nightly")
+    batch.add_option("FILE", batch_options.file, "The batch file, or the name of a ready one, such as nightly; `-` reads standard input")
         ->required();
     const auto add_choice = [&batch = batch](const char* name, std::vector<std::string>& values, const char* help) {
         batch.add_option(name, values, help)->take_all()->allow_extra_args(false);

@@ -233,8 +233,11 @@ class Pages(InFolder):
             for parameter in signature.parameters:
                 self.assertIn(f"    {parameter} : ", page, name)
             self.assertIn(function.declaration["summary"].split()[0], page)
-            own = [spec["name"] for spec in function.declaration["parameters"] if "-" in spec["name"]]
-            for parameter in own:
+            measured = [metric["name"] for metric in function.declaration["metrics"]]
+            for metric in measured:
+                self.assertIn(f"    {metric} : ", page, name)
+            kept = {*measured, *function.declaration.get("adds", [])}
+            for parameter in {spec["name"] for spec in function.declaration["parameters"] if "-" in spec["name"]} - kept:
                 self.assertNotIn(f"`{parameter}`", page, name)
             self.assertTrue(max(map(len, page.split("\n")[4:])) <= 96, name)
 

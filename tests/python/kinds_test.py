@@ -216,7 +216,7 @@ class Files(InFolder):
         self.assertRefuses("'cube.ply' contains mesh; expected tets", lambda: scanmill.read("cube.ply", kind="tets"))
         with self.assertWarnsRegex(scanmill.ScanmillWarning, "12 triangles"):
             self.assertEqual(scanmill.read("cube.ply", kind="points").kind, "points")
-        self.assertRefuses("no kind", lambda: scanmill.read("cube.ply", kind="meshes"))
+        self.assertRefuses("the kind is 'meshes'; expected points", lambda: scanmill.read("cube.ply", kind="meshes"))
         with self.assertRaises(TypeError):
             scanmill.write(np.eye(3), "a.ply")
         with self.assertRaises(ValueError):
