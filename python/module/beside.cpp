@@ -41,6 +41,7 @@ struct Shared : Beside {
 struct Threads {
     std::mutex mutex;
     std::map<const Shared*, std::pair<std::shared_ptr<Shared>, std::thread>> running;
+    std::atomic<bool> is_interpreter_ending = false;
 
     void start(const std::shared_ptr<Shared>& shared);
     /// Waits until the work's thread has ended, unless another caller does. Cancels the work first if `cancels`.
@@ -93,7 +94,14 @@ void require_own_threads() {
         .hint("start processes with multiprocessing.get_context('spawn'), or fork before the first use");
 }
 
+/// Stops the calling thread for ever if the interpreter is ending. Python would end a thread that asks for the
+/// interpreter's lock then, in the middle of C++ code, which ends the process.
+static void stay_out_of_ending_interpreter() {
+    while (threads().is_interpreter_ending) pause();
+}
+
 void stop_all() {
+    threads().is_interpreter_ending = true;
     const nb::gil_scoped_release released;
     while (true) {
         const Shared* first = nullptr;
@@ -120,9 +128,10 @@ void run_beside(std::function<void(Beside&)> work, nb::handle on_progress) {
             const bool is_over = shared->ended.wait_for(lock, interrupt ? patience_after_cancel : patience,
                                                         [&] { return shared->has_ended; });
             lock.unlock();
+            stay_out_of_ending_interpreter();
             if (is_over) threads().finish(shared.get(), false);
             if (is_over || interrupt) break;
-            const nb::gil_scoped_acquire locked;  // does not return if the interpreter is ending
+            const nb::gil_scoped_acquire locked;
             try {
                 if (PyErr_CheckSignals() != 0) throw nb::python_error();
                 const double progress = shared->progress;

@@ -35,6 +35,7 @@ void translate(const std::exception_ptr& thrown, void*) {
 }  // namespace
 
 NB_MODULE(_native, module) {
+    nb::set_leak_warnings(false);  // threads that still run when the interpreter ends keep their values
     nb::register_exception_translator(translate);
     module.attr("version") = SCANMILL_VERSION;
     add_values(module);

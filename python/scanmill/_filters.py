@@ -106,9 +106,9 @@ class Filter:
         parts += entry("", "scanmill.Error", "With the reason and what to do.")
         parts += ["", "Notes", "-----"]
         if declared.get("ties"):
-            parts += textwrap.wrap(f"Ties: {declared['ties']}", 88)
+            parts += textwrap.wrap(f"Ties: {self._with_python_names(declared['ties'])}", 88)
         if declared.get("not-finite"):
-            parts += textwrap.wrap(f"NaN and infinity: {declared['not-finite']}", 88)
+            parts += textwrap.wrap(f"NaN and infinity: {self._with_python_names(declared['not-finite'])}", 88)
         for doubt in declared.get("doubts", []):
             parts += textwrap.wrap(f"The result is doubtful if {self._with_python_names(doubt)}.", 88)
         parts += textwrap.wrap("A length is a text such as '0.2 mm', or a number in the scan's own unit.", 88)

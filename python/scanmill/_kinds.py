@@ -531,22 +531,25 @@ class Transforms(_Document):
     ----------
     matrices : 4 × 4 or n × 4 × 4 numbers
         Rotation and translation.
-    names : list of pairs of str, optional
-        The frames from which and to which each motion leads; a text may be empty.
+    scans : list of str, optional
+        The frame, or the scan, from which each motion starts. Needed for more than one.
+    frame : str, optional
+        The frame to which all lead.
     unit : str, optional
         Unit of the translations.
     """
 
     _kind = "transform"
 
-    def __init__(self, matrices: Any, names: Sequence[tuple[str, str]] | None = None, *, unit: str | None = None):
-        poses = np.asarray(matrices, np.float64).reshape(-1, 4, 4).tolist()
-        frames = names or [("", "")] * len(poses)
-        if len(frames) != len(poses):
-            raise ValueError(f"names has {len(frames)} pairs; expected {len(poses)}, one per matrix")
-        named = [{"matrix": matrix, **{key: text for key, text in (("from", old), ("to", new)) if text}} for matrix, (old, new) in zip(poses, frames)]
-        document: dict[str, Any] = {"scanmill": 1, **({"unit": unit} if unit else {}), "poses": named}
-        self._hold(_native.value("transform", json.dumps(document))[0])
+    def __init__(self, matrices: Any, scans: Sequence[str] = (), *, frame: str = "", unit: str | None = None):
+        motions = np.asarray(matrices, np.float64).reshape(-1, 4, 4).tolist()
+        if scans and len(scans) != len(motions):
+            raise ValueError(f"scans has {len(scans)} names; expected {len(motions)}, one per matrix")
+        poses = [{"matrix": matrix} for matrix in motions]
+        for pose, scan in zip(poses, scans):
+            pose["scan"] = scan
+        document: dict[str, Any] = {"scanmill": 1, "unit": unit, "frame": frame or None, "poses": poses}
+        self._hold(_native.value(self._kind, json.dumps(document))[0])
 
     @property
     def matrices(self) -> np.ndarray:

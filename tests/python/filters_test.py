@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Filters as functions: results, documentation, interrupts, isolation, refusals."""
 import inspect
+import os
 import pydoc
 import statistics
 import threading
@@ -55,6 +56,34 @@ class Calls(InFolder):
         self.assertRefuses("at least one", lambda: scanmill.merge([]), TypeError)
         solid = self.solid(99)
         self.assertRefuses(".outputs['tets']", lambda: scanmill.sculpt(solid), TypeError)
+
+    def test_options_of_the_wrong_type(self):
+        for wrong in ({"seed": -1}, {"threads": None}, {"memory_limit": 1e9}, {"time_limit": "3 s"}, {"time_limit": float("nan")}, {"isolated": "no"}, {"progress": 3}):
+            self.assertRefuses(next(iter(wrong)), lambda wrong=wrong: scanmill.voxel_thin(random_points(9), **wrong), TypeError)
+
+    def test_an_array_in_place_of_points_is_not_frozen(self):
+        array = np.random.default_rng(1).random((50, 3))
+        scanmill.voxel_thin(array)
+        array[0] = 0
+
+    def test_where_warnings_are_errors_the_result_is_theirs(self):
+        flipped = scanmill.Mesh(cube().positions, cube().triangles[:, ::-1])
+        with self.assertRaises(scanmill.DoubtWarning) as caught:
+            scanmill.edge_flip(flipped)
+        self.assertEqual(caught.exception.result.kind, "mesh")
+
+    def test_exceptions_that_filters_should_not_throw(self):
+        if "test-step" not in scanmill.filters:
+            self.skipTest("skipped: needs the filters of the C++ tests")
+        for mode in ("throw", "throw-number", "out-of-memory"):
+            self.assertRefuses("unexpected error", lambda mode=mode: scanmill.filters["test-step"](random_points(9), mode=mode))
+
+    def test_a_module_that_cannot_be_used(self):
+        (self.folder / "scanmill-broken.json").write_text("{}")
+        code = "import scanmill; print(hasattr(scanmill, 'broken'), 'broken' in scanmill.filters, 3 in scanmill.filters)\nscanmill.broken"
+        result = python(code, env={**os.environ, "SCANMILL_PLUGIN_PATH": str(self.folder)})
+        self.assertEqual(result.stdout, "False False False\n")
+        self.assertIn("AttributeError: the filter 'broken' cannot be used", result.stderr)
 
     def test_a_failed_filter_keeps_its_warnings(self):
         with warnings.catch_warnings(record=True):
@@ -144,6 +173,17 @@ class Interrupts(InFolder):
 
     def test_ctrl_c_stops_an_isolated_filter(self):
         self.stopped_after(lambda: scanmill.delaunay(random_points(1_000_000), isolated=True), 1)
+
+    def test_the_interpreter_ends_while_a_thread_runs_a_filter(self):
+        for call in ("scanmill.delaunay(points)", "scanmill.delaunay(points, isolated=True)", "scanmill.voxel_thin(points)"):
+            code = (
+                "import scanmill, numpy, threading, time\n"
+                "points = scanmill.Points(numpy.random.default_rng(1).random((500_000, 3)))\n"
+                f"threading.Thread(target=lambda: {call}, daemon=True).start()\n"
+                "time.sleep(0.3)\n"
+            )
+            result = python(code)
+            self.assertEqual((result.stderr, result.returncode), ("", 0), call)
 
     def test_the_interpreter_ends_after_an_interrupt(self):
         code = (

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Kinds as NumPy arrays: no copies, no changes, and what is refused."""
+import copy
 import pickle
 import unittest
 
@@ -37,6 +38,31 @@ class Arrays(InFolder):
         points = scanmill.Points(readonly)
         array[0] = 5
         self.assertEqual(points.positions[0].tolist(), [99, 99, 99])
+
+    def test_indices_that_anybody_can_write_are_copied(self):
+        triangles = cube().triangles.copy()
+        view = triangles[:]
+        mesh = scanmill.Mesh(cube().positions, triangles)
+        view[0] = 4_000_000_000
+        self.assertEqual(mesh.triangles.max(), 7)
+        self.assertTrue(np.shares_memory(mesh.triangles, scanmill.Mesh(mesh.positions, mesh.triangles).triangles))
+
+    def test_equal_types_of_another_name_are_no_way_to_write(self):
+        numbers = np.arange(3, dtype=np.longlong)
+        points = scanmill.Points(np.eye(3), {"number": numbers})
+        numbers[0] = 99
+        self.assertEqual(points.columns["number"][0], 0)
+
+    def test_with_positions_keeps_columns_and_their_units(self):
+        points = scanmill.Points(np.random.default_rng(1).random((200, 3)), unit="mm")
+        thin = scanmill.voxel_thin(points, bin_size="0.3 mm")
+        moved = thin.with_positions(thin.positions + 1)
+        np.testing.assert_array_equal(moved.positions, thin.positions + 1)
+        self.assertEqual((list(moved.columns), moved.unit), (list(thin.columns), "mm"))
+        if "bin-size" in thin.columns:
+            np.testing.assert_allclose(moved.in_unit("m").columns["bin-size"], thin.columns["bin-size"] / 1000)
+        self.assertRefuses("positions; 3 were given", lambda: thin.with_positions(np.eye(3)))
+        self.assertRefuses("NaN", lambda: thin.with_positions(thin.positions * np.nan))
 
     def test_arrays_that_are_not_row_by_row_or_of_another_type_are_converted(self):
         expected = np.arange(12.0).reshape(4, 3)
@@ -100,6 +126,11 @@ class Arrays(InFolder):
         self.assertEqual(metres.unit, "m")
         np.testing.assert_allclose(metres.world_positions, points.world_positions / 1000, rtol=1e-15)
         self.assertRefuses("'parsec'", lambda: scanmill.Points(np.eye(3), unit="parsec"))
+        self.assertRefuses("not declared", lambda: scanmill.Points(np.eye(3)).in_unit("mm"))
+        self.assertRefuses("'parsec'", lambda: points.in_unit("parsec"))
+        for wrong in ({"origin": (0, 0, np.nan)}, {"unit": 3}, {"frame": None}, {"columns": {3: [1, 2, 3]}}):
+            with self.assertRaises((TypeError, ValueError)):
+                scanmill.Points(np.eye(3), **wrong)
 
     def test_three_and_a_half_million_points_are_not_copied(self):
         array = np.random.default_rng(1).random((3_500_000, 3))
@@ -160,6 +191,21 @@ class Kinds(InFolder):
         np.testing.assert_allclose(list(again), list(motion), atol=1e-15)
         np.testing.assert_allclose(scanmill.apply_transform(again, points).world_positions, moved.positions, atol=1e-9)
 
+    def test_transforms_of_matrices(self):
+        matrix = np.eye(4)
+        matrix[:3, 3] = 1, 2, 3
+        motion = scanmill.Transforms(matrix, ["a"], frame="b", unit="mm")
+        np.testing.assert_array_equal(motion.matrices, [matrix])
+        self.assertEqual(motion.names, [("a", "b")])
+        self.assertRefuses("rotation", lambda: scanmill.Transforms(np.diag([2, 2, 2, 1])))
+        with self.assertRaises(ValueError):
+            scanmill.Transforms(np.eye(3))
+
+    def test_kinds_that_only_filters_make(self):
+        for kind in (scanmill.Tets, scanmill.Features, scanmill.Picture, scanmill.Value):
+            with self.assertRaises(TypeError):
+                kind(np.eye(3))
+
     def test_patches_and_pictures(self):
         patches = scanmill.a_patch(cube())
         self.assertEqual(patches.weights.shape, (len(patches.tets), 20))
@@ -183,6 +229,7 @@ class Kinds(InFolder):
         np.testing.assert_array_equal(again.columns["weight"], points.columns["weight"])
         for value in (cube(), scanmill.delaunay(random_points(20)), scanmill.features(cube()), scanmill.measure(cube(), cube())):
             self.assertEqual(repr(pickle.loads(pickle.dumps(value))), repr(value))
+        self.assertIs(copy.deepcopy(points), points)
         error = pickle.loads(pickle.dumps(scanmill.Error("a", ["b"], "c")))
         self.assertEqual((error.sentence, error.frames, error.hint), ("a", ("b",), "c"))
 
@@ -202,6 +249,14 @@ class Files(InFolder):
         with self.assertWarnsRegex(scanmill.ScanmillWarning, "unit mm"):
             other = scanmill.read("a.ply", unit="in", frame="lab")
         self.assertEqual((other.unit, other.frame), ("in", "lab"))
+
+    def test_names_that_are_not_utf_8(self):
+        name = b"q\xff.ply"
+        cube().write(name)
+        self.assertEqual(scanmill.read(name).kind, "mesh")
+        self.assertRefuses("there is no such file", lambda: scanmill.read(b"no\xff.ply"))
+        with self.assertWarns(scanmill.ScanmillWarning):
+            scanmill.Mesh(cube().positions, cube().triangles, vertex_columns={"weight": np.arange(8.0)}).write(b"q\xff.stl")
 
     def test_what_a_format_cannot_hold_is_a_warning(self):
         with self.assertWarnsRegex(scanmill.ScanmillWarning, "STL"):

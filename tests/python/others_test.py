@@ -23,6 +23,12 @@ class Trimesh(InFolder):
         np.testing.assert_array_equal(again.triangles, mesh.triangles)
         np.testing.assert_array_equal(again.vertex_columns["weight"], np.arange(8.0))
         self.assertEqual(again.unit, "mm")
+        other.vertices += 1  # not those of the value
+        self.assertEqual(mesh.positions.min(), 0)
+        colours = np.arange(32, dtype=np.uint8).reshape(8, 4)
+        coloured = scanmill.Mesh(cube().positions, cube().triangles, vertex_columns={"colour": colours}).to_trimesh()
+        self.assertEqual(coloured.visual.kind, "vertex")
+        np.testing.assert_array_equal(scanmill.from_trimesh(coloured).vertex_columns["colour"], colours)
         cloud = scanmill.from_trimesh(scanmill.to_trimesh(random_points(5)))
         np.testing.assert_array_equal(cloud.positions, random_points(5).positions)
         with self.assertRaises(TypeError):
@@ -53,6 +59,9 @@ class Pyvista(InFolder):
         tets = scanmill.delaunay(random_points(50))
         self.assertEqual(scanmill.to_pyvista(tets).n_cells, len(tets.cells))
         self.assertEqual(scanmill.to_pyvista(random_points(7)).n_points, 7)
+        mesh = cube()
+        scanmill.to_pyvista(mesh).points[0] = 9  # not those of the value
+        self.assertEqual(mesh.positions.max(), 1)
         features = scanmill.features(cube())
         self.assertEqual(scanmill.to_pyvista(features).n_lines, len(features.lines))
 

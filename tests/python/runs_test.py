@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Workflows and batches from Python."""
+import json
+import os
 import time
 import unittest
 import warnings
@@ -8,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import scanmill
-from support import InFolder, cube, interrupt_after, random_points
+from support import InFolder, cube, interrupt_after, python, random_points
 
 SHAPES = """\
 scanmill: 1
@@ -18,6 +20,13 @@ outputs:
   "{variant}.ply": virtual-scan
 """
 THIN = {"scanmill": 1, "inputs": {"scan": "points"}, "parameters": {"bin": {"default": "10 %diag", "help": "The bins."}}, "steps": [{"voxel-thin": {"bin-size": "$bin"}}], "outputs": {"{scan}.ply": "voxel-thin"}}
+
+
+def read_bytes(file):
+    try:
+        return file.read_bytes()
+    except OSError:
+        return b""  # the process has ended
 
 
 class Runs(InFolder):
@@ -81,7 +90,7 @@ class Runs(InFolder):
         self.assertIn("no such file", result.cells[0].error)
 
     def test_workflows_that_do_not_parse(self):
-        self.assertRefuses("workflow:4:1: invalid YAML", lambda: self.run_quietly("steps: [\n"))
+        self.assertRefuses("workflow:2:1: invalid YAML", lambda: self.run_quietly("steps: [\n"))
         self.assertRefuses("did you mean 'decimate'", lambda: self.run_quietly({"scanmill": 1, "steps": [{"decimat": None}]}))
         self.assertRefuses("ready workflow", lambda: self.run_quietly("nothing", random_points(5)))
         with self.assertRaises(TypeError):
@@ -89,6 +98,80 @@ class Runs(InFolder):
         with self.assertRaises(TypeError):
             self.run_quietly(THIN, np.eye(3))
         self.assertRefuses("no parameter", lambda: self.run_quietly(THIN, random_points(50), parameters={"bins": 3}))
+
+    def test_texts_are_taken_as_they_are(self):
+        for text in (json.dumps(THIN, indent=1), f"---\n{SHAPES}...\n"):
+            self.assertTrue(self.run_quietly(text, *([random_points(50)] if "voxel" in text else [])).ok)
+        named = {**THIN, "parameters": {"my_bin": {"default": np.int64(1), "help": "The bins."}}, "steps": [{"voxel-thin": {"bin-size": "$my_bin"}}]}
+        named["parameters"]["my_bin"]["default"] = "1 u"
+        self.assertEqual(self.run_quietly(named, random_points(50), parameters={"my_bin": "0.5 u"}).cells[0].steps[1].parameters["bin-size"], "0.5 u")
+        self.assertTrue(self.run_quietly({"scanmill": 1, "steps": [{"virtual-scan": {"shape": "sphere", "views": [np.int64(4)]}}], "outputs": {"a.ply": "virtual-scan"}}).ok)
+
+    def test_the_working_folder_may_be_read_only(self):
+        (self.folder / "fixed").mkdir(mode=0o500)
+        os.chdir(self.folder / "fixed")
+        try:
+            result = self.run_quietly(THIN, random_points(50), output=self.folder / "out")
+        finally:
+            os.chdir(self.folder)
+        self.assertTrue(result.ok)
+
+    def test_values_keep_their_names_from_run_to_run(self):
+        names = [self.run_quietly(THIN, random_points(50), output="out").cells[0].scan for _ in range(2)]
+        self.assertEqual(names, ["out/inputs/scan.ply"] * 2)
+        self.assertEqual([cell.scan for cell in self.run_quietly(THIN, (random_points(50) for _ in range(2)), output="two")], ["two/inputs/scan-1.ply", "two/inputs/scan-2.ply"])
+
+    def test_names_that_look_like_options_or_lists(self):
+        random_points(50).write("-dash.ply")
+        self.assertTrue(self.run_quietly(THIN, "-dash.ply").ok)
+        with self.assertRaisesRegex(ValueError, "comma"):
+            self.run_quietly(THIN, inputs={"scan": "a,b.ply"})
+
+    def test_a_run_that_cannot_be_recorded(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out/scanmill.sqlite").write_text("this is not a database")
+        try:
+            result = self.run_quietly(THIN, random_points(50), output="out")
+        except scanmill.Error as error:
+            self.assertIn("scanmill.sqlite", str(error))
+        else:
+            self.assertEqual(result.number, 0)
+
+    def test_warnings_of_the_program_are_not_lost(self):
+        with self.assertWarnsRegex(scanmill.ScanmillWarning, "cache"):
+            scanmill.run(THIN, random_points(50), cache="/proc/nothing")
+
+    def test_where_warnings_are_errors_the_result_is_theirs(self):
+        points = scanmill.Points(np.random.default_rng(1).random((50, 3)), {"weight": np.arange(50.0)})
+        stl = {**THIN, "steps": [*THIN["steps"], {"delaunay": None}, {"cocone": None}], "outputs": {"{scan}.stl": "cocone"}}
+        with self.assertRaises(scanmill.ScanmillWarning) as caught:
+            scanmill.run(stl, points, cache=False)
+        self.assertEqual(caught.exception.result.cells[0].outputs[0].file.name, "scan.stl")
+
+    def test_a_filter_that_breaks_its_declaration(self):
+        if "test-step" not in scanmill.filters:
+            self.skipTest("skipped: needs the filters of the C++ tests")
+        broken = {"scanmill": 1, "inputs": {"scan": "points"}, "steps": [{"test-step": {"mode": "undeclared-metric"}}], "outputs": {"{scan}.ply": "test-step"}}
+        result = self.run_quietly(broken, random_points(9), check=False)
+        self.assertEqual((result.exit_code, result.cells[0].outcome), (3, "failed"))
+        self.assertRefuses("does not declare", lambda: self.run_quietly(broken, random_points(9)))
+
+    def test_a_run_ends_with_its_python(self):
+        code = (
+            "import scanmill, numpy, threading, os, signal, time\n"
+            "points = scanmill.Points(numpy.random.default_rng(1).random((300_000, 3)))\n"
+            "threading.Timer(1.5, lambda: os.kill(os.getpid(), signal.SIGKILL)).start()\n"
+            "scanmill.run('raw-scans', points, output='out', cache=False)\n"
+        )
+        python(code)
+        marker = str(self.folder / "out").encode()
+        left = [1]
+        for _ in range(50):
+            left = [process for process in Path("/proc").glob("[0-9]*/cmdline") if marker in read_bytes(process)]
+            if not left:
+                break
+            time.sleep(0.2)
+        self.assertEqual(left, [])
 
     def test_ctrl_c_stops_a_run(self):
         times = []
