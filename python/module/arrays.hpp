@@ -75,7 +75,8 @@ Buffer<T> buffer_of(const GivenArray& array, const char* name) {
     return {owner_of(array), static_cast<const T*>(static_cast<const void*>(array.data())), array.shape(0)};
 }
 
-/// A column that views the array: #rows, or #rows × components. Its numbers are no lengths, so no change of unit scales them.
+/// A column that views the array: #rows, or #rows × components. Its numbers are no lengths, so no change of unit scales
+/// them.
 Column column_of(const std::string& name, const GivenArray& array);
 
 }  // namespace scanmill::python

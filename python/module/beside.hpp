@@ -21,7 +21,8 @@ struct Beside {
 /// left to itself then, so it must own everything that it uses.
 void run_beside(std::function<void(Beside&)> work, nanobind::handle on_progress);
 
-/// Cancels all work, also that of other threads, and waits until it has ended. To be called before the interpreter ends.
+/// Cancels all work, also that of other threads, and waits until it has ended. To be called before the interpreter
+/// ends.
 void stop_all();
 
 /// Throws Error in a process that was forked after its parent had used threads: those threads are missing here, so work

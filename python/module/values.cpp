@@ -212,10 +212,9 @@ std::pair<Value, nb::list> value_from(const std::string& kind, const std::string
     return {Value(known, object), readable(warnings)};
 }
 
-std::pair<Value, nb::list> read(const std::filesystem::path& file,
-                                                const std::optional<std::string>& kind,
-                                                const std::optional<std::string>& unit, const std::string& frame,
-                                                const std::string& invalid) {
+std::pair<Value, nb::list> read(const std::filesystem::path& file, const std::optional<std::string>& kind,
+                                const std::optional<std::string>& unit, const std::string& frame,
+                                const std::string& invalid) {
     require_own_threads();
     LeafSource leaf;
     const auto [path, view] = file_view(file);

@@ -580,7 +580,9 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
 
     auto [batch, batch_options] = add_command<BatchOptions>(
         app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);
-    batch.add_option("FILE", batch_options.file, "The batch file, or the name of a ready one, such as nightly; `-` reads standard input")
+    batch
+        .add_option("FILE", batch_options.file,
+                    "The batch file, or the name of a ready one, such as nightly; `-` reads standard input")
         ->required();
     const auto add_choice = [&batch = batch](const char* name, std::vector<std::string>& values, const char* help) {
         batch.add_option(name, values, help)->take_all()->allow_extra_args(false);
