@@ -9,7 +9,7 @@ import math
 import os
 import tempfile
 import warnings as python_warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -96,10 +96,11 @@ def _frame(unit: str | None, origin: Any, frame: str) -> tuple[str | None, tuple
 class Measured(dict):
     """Numbers by name. `units` has the unit of each: "length", "count", "angle" …; lengths are in `unit`."""
 
-    def __init__(self, numbers: list[tuple[str, float, str]] = (), unit: str | None = None):
+    def __init__(self, numbers: Iterable[tuple[str, float, str]] = (), unit: str | None = None):
         typed = {"boolean": bool, "count": lambda number: int(number) if number == number else number}
-        super().__init__((name, typed.get(kind, float)(value)) for name, value, kind in numbers)
-        self.units = {name: kind for name, _, kind in numbers}
+        listed = list(numbers)
+        super().__init__((name, typed.get(kind, float)(value)) for name, value, kind in listed)
+        self.units = {name: kind for name, _, kind in listed}
         self.unit = unit
 
 
@@ -545,7 +546,7 @@ class Transforms(_Document):
         motions = np.asarray(matrices, np.float64).reshape(-1, 4, 4).tolist()
         if scans and len(scans) != len(motions):
             raise ValueError(f"scans has {len(scans)} names; expected {len(motions)}, one per matrix")
-        poses = [{"matrix": matrix} for matrix in motions]
+        poses: list[dict[str, Any]] = [{"matrix": matrix} for matrix in motions]
         for pose, scan in zip(poses, scans):
             pose["scan"] = scan
         document: dict[str, Any] = {"scanmill": 1, "unit": unit, "frame": frame or None, "poses": poses}

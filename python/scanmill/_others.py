@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ._kinds import Mesh, Points, Value
+from ._kinds import Features, Mesh, Points, Tets, Value
 
 
 def _imported(name: str) -> Any:
@@ -113,11 +113,9 @@ def from_open3d(geometry: Any, *, unit: str | None = None) -> Mesh | Points:
     return Mesh(np.array(positions), np.asarray(geometry.triangles), vertex_columns=columns, unit=unit)
 
 
-def to_pyvista(value: Value) -> Any:
+def to_pyvista(value: Points | Mesh | Tets | Features) -> Any:
     """A pyvista.PolyData of points, a mesh or the lines of features, or an UnstructuredGrid of tetrahedra, in world coordinates."""
     pyvista = _imported("pyvista")
-    from ._kinds import Features, Tets
-
     _require(value, Points, Mesh, Tets, Features)
     if isinstance(value, Tets):
         cells = np.column_stack([np.full(len(value.cells), 4), value.cells.astype(np.int64)])

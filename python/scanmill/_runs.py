@@ -263,7 +263,7 @@ def _files(given: Any, output: Path, name: str) -> list[str]:
     items = [given] if isinstance(given, (str, os.PathLike, Value)) else given
     if not isinstance(items, Iterable):
         raise TypeError(f"'{name}' is {type(given).__name__}; expected a file or a value such as Points")
-    files = []
+    files: list[str] = []
     items = list(items)
     for item in items:
         if isinstance(item, Value):
