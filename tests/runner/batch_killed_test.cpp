@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runners and workers that are interrupted or killed.
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -23,6 +26,27 @@ TEST_F(Killed, Interrupt_EndsWhatWillNotEnd_AndKeepsWhatWasDone) {
     const Json run = recorded(1);
     EXPECT_EQ(run["run"]["outcome"], "interrupted");
     EXPECT_EQ(count(run["cells"], "outcome", "ok"), 2u);
+}
+
+/// The shell that started the batch is killed as soon as the first step has begun.
+TEST_F(Killed, Parent_EndsTheBatchThatAskedForIt) {
+    write_workflow("1");
+    write_scans("scan", 1);
+    write_batch("{path: scans/*.xyz, set: {mode: wait}}");
+    const std::string command = fmt::format(
+        "cd '{}'; export HOME=$PWD SCANMILL_PLUGIN_PATH='{}'; "
+        "bash -c '\"{}\" batch b.yaml -o out -j 1 --stop-with-parent --json >events 2>/dev/null & "
+        "until grep -q step-started events; do sleep 0.05; done; kill -9 $$' 2>/dev/null",
+        folder_.path().string(), test_plugin_folder(), program_file());
+    EXPECT_NE(std::system(command.c_str()), 0);
+    const auto last_event = [&] {
+        const std::string events = content_of(folder_ / "events");
+        return events.find("\"event\":\"run-ended\"") != std::string::npos;
+    };
+    for (int tries = 0; tries < 300 && !last_event(); ++tries)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_TRUE(last_event());
+    EXPECT_EQ(recorded(1)["run"]["outcome"], "interrupted");
 }
 
 TEST_F(Killed, Runner_KilledAtAnyMoment_LeavesARunThatIsFinishedByTheNext) {
