@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "support/folders.hpp"
 #include "support/program.hpp"
@@ -39,15 +40,23 @@ protected:
                       "gate: {" +
                           gate + "}\n");
     }
-    ProgramResult scanmill(const std::vector<std::string>& arguments) {
-        return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
+    ProgramOptions options() const {
+        return {.folder = folder_.path(), .environment = environment_, .cache = folder_ / "home"};
     }
+    ProgramResult scanmill(const std::vector<std::string>& arguments) { return scanmill_program(arguments, options()); }
     ProgramResult shard(const std::string& text, const std::string& out) {
         return scanmill({"batch", "b.yaml", "--shard", text, "-o", out, "-q"});
     }
     void run_shards(int count) {
         for (int number = 1; number <= count; ++number)
             shard(std::to_string(number) + "/" + std::to_string(count), "p" + std::to_string(number));
+    }
+    /// Merges the folders `prefix`1, `prefix`2, … in an order that the seed decides.
+    ProgramResult merge_shuffled(const std::string& prefix, int count, unsigned seed, const std::string& out) {
+        std::vector<std::string> folders;
+        for (int number = 1; number <= count; ++number) folders.push_back(prefix + std::to_string(number));
+        std::shuffle(folders.begin(), folders.end(), std::mt19937(seed));
+        return merge(folders, out);
     }
     ProgramResult merge(const std::vector<std::string>& folders, const std::string& out = "whole") {
         std::vector<std::string> arguments{"runs", "merge"};
@@ -75,8 +84,10 @@ protected:
         return names;
     }
     /// What the report says, without clocks, costs and folders.
-    nlohmann::json report(const std::string& out) {
-        nlohmann::json all = nlohmann::json::parse(scanmill({"report", out, "--json"}).out)["report"];
+    nlohmann::json report(const std::string& out, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"report", out, "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        nlohmann::json all = nlohmann::json::parse(scanmill(arguments).out)["report"];
         nlohmann::json cells = nlohmann::json::array();
         for (nlohmann::json cell : all["cells"]) {
             for (const char* member : {"seconds", "costs", "command"}) cell.erase(member);
@@ -87,6 +98,7 @@ protected:
     }
 
     TemporaryFolder folder_;
+    std::vector<std::string> environment_{"SCANMILL_PLUGIN_PATH=" + test_plugin_folder()};
 };
 
 }  // namespace scanmill::test

@@ -16,17 +16,16 @@ TEST_F(Shards, MergedInAnyOrder_AreTheRunOfOneMachine) {
     scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
     const auto outputs_of_one = outputs("one");
     ASSERT_GE(outputs_of_one.size(), 2u * 8);
-    for (const int count : {1, 3, 8}) {
+    for (const int count : {1, 3, 7, 8}) {
         SCOPED_TRACE(count);
         run_shards(count);
-        std::vector<std::string> folders;
-        for (int number = count; number >= 1; --number) folders.push_back("p" + std::to_string(number));
         const std::string out = "whole" + std::to_string(count);
-        const ProgramResult merged = merge(folders, out);
+        const ProgramResult merged = merge_shuffled("p", count, 3, out);
         EXPECT_EQ(merged.exit_code, 1) << merged.err << "cells with two points fail, as in one run";
         EXPECT_EQ(report(out), report("one"));
         EXPECT_THAT(differences(outputs(out), outputs_of_one), testing::IsEmpty());
-        for (const std::string& folder : folders) {
+        for (int number = 1; number <= count; ++number) {
+            const std::string folder = "p" + std::to_string(number);
             EXPECT_TRUE(outputs(folder).empty()) << "the outputs were moved";
             fs::remove_all(folder_ / folder);
         }
@@ -99,13 +98,6 @@ TEST_F(Shards, WrongNumbers_AreRefused) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "--shard", "1/2", "--scan", "scans/s1.xyz"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs", "merge", "p1"}).exit_code, 2) << "-o is missing";
-}
-
-TEST_F(Shards, AKilledShard_IsRunAgain) {
-    run_shards(2);
-    // A run without an end is one that was killed.
-    scanmill({"batch", "b.yaml", "--shard", "2/2", "-o", "p2", "-q", "-j", "1"});
-    EXPECT_EQ(merge({"p1", "p2"}).exit_code, 1);
 }
 
 }  // namespace
