@@ -93,6 +93,9 @@ ChunkFile read_chunk(const fs::path& file) {
     } catch (const Json::exception& error) {
         throw Error("'{}' is not the file of a chunk: {}", file.string(), error.what())
             .hint("an export of the batch writes such files");
+    } catch (const Error& error) {
+        throw Error("the chunk '{}' cannot be read: {}", file.string(), error.sentence())
+            .hint("an export of the batch writes such files");
     }
     return chunk;
 }

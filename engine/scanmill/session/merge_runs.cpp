@@ -77,11 +77,25 @@ void require_equal(const ShardRun& first, const ShardRun& other) {
             .hint("run the shards anew");
 }
 
+/// Throws Error if a filter had different modules in two shards. Modules of one version may differ in their build.
+void require_equal_modules(const std::vector<ShardRun>& shards) {
+    std::map<std::string, std::pair<const ShardRun*, const StepRecord*>> first;
+    for (const ShardRun& shard : shards)
+        for (const StepRecord& step : shard.run.steps) {
+            const auto& [other, same] = first.try_emplace(step.filter, &shard, &step).first->second;
+            if (same->filter_version != step.filter_version || same->build != step.build)
+                throw Error("{} and {} cannot be merged: they ran different builds of the filter '{}'",
+                            name_of_shard(*other), name_of_shard(shard), step.filter)
+                    .hint("install the same build on all machines, and run one of the two shards again");
+        }
+}
+
 /// Sorted by number. Throws Error if one is missing or given twice.
 std::vector<ShardRun> shards_in(const std::vector<fs::path>& folders) {
     std::vector<ShardRun> shards;
     for (const fs::path& folder : folders) shards.push_back(shard_in(folder));
     for (const ShardRun& shard : shards) require_equal(shards.front(), shard);
+    require_equal_modules(shards);
     std::ranges::stable_sort(shards, {}, [](const ShardRun& run) { return run.shard.number; });
     for (std::size_t i = 1; i < shards.size(); ++i)
         if (shards[i].shard == shards[i - 1].shard)
@@ -162,11 +176,6 @@ public:
     }
 
 private:
-    /// The file in the target for a file that the shard wrote.
-    fs::path place_of(const ShardRun& shard, const std::string& file) const {
-        return target_ / fs::path(file).lexically_relative(shard.run.start.folder);
-    }
-
     /// Plans the move of every written file, checks its bytes, and sets its path in the record.
     void plan_moves(ShardRun& shard) {
         const auto add = [&](std::string& file, const std::string& sha256) {
