@@ -140,8 +140,8 @@ TEST_F(Shards, OnMachinesWhoseClocksDisagree_AreMergedInTheOrderOfTheBatch) {
         };
     };
     change_record("p1", started("2026-03-01T03:00:00.000Z"));
-    change_record("p2", started("2026-03-01T02:00:00.000Z"));
-    change_record("p3", started("2026-03-01T01:00:00.000Z"));
+    change_record("p2", started("2026-03-01T01:00:00.000Z"));
+    change_record("p3", started("2026-03-01T02:00:00.000Z"));
     EXPECT_EQ(merge({"p2", "p1", "p3"}).exit_code, 1);
     EXPECT_EQ(report("whole"), report("one"));
     EXPECT_THAT(differences(outputs("whole"), outputs("one")), testing::IsEmpty());

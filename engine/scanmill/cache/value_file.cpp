@@ -303,7 +303,12 @@ Value value_in(const std::shared_ptr<const MappedFile>& map, const std::filesyst
 Value read_value(const std::filesystem::path& file, std::string_view content) {
     std::error_code unknown;
     if (std::filesystem::file_size(file, unknown) == 0) throw DamagedFile("'{}' is empty", file.string());
-    const auto map = std::make_shared<const MappedFile>(file);
+    std::shared_ptr<const MappedFile> map;
+    try {
+        map = std::make_shared<const MappedFile>(file);
+    } catch (const Error& error) {
+        throw error.reworded(fmt::format("'{}' {}", file.string(), error.sentence()));
+    }
     try {
         return value_in(map, file, content);
     } catch (const DamagedFile&) {
