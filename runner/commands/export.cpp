@@ -38,7 +38,9 @@ struct Options {
 /// What the scripts need to know.
 struct Plan {
     std::string name;  ///< of the batch
-    fs::path batch, folder, result, cache;  ///< absolute; `cache`: empty for the default
+    std::string batch;  ///< file, as the user named it
+    fs::path directory;  ///< absolute; the jobs work in it, so that they name scans as a run of the user does
+    fs::path folder, result, cache;  ///< absolute; `cache`: empty for the default
     std::string program;
     std::size_t chunks = 0;
     unsigned cores = 1, megabytes = 0, minutes = 0;  ///< of a chunk
@@ -51,14 +53,20 @@ std::string quoted(const std::string& text) {
     return all + "'";
 }
 
+std::string change_directory(const Plan& plan) {
+    return fmt::format("cd {} || exit 3", quoted(plan.directory.string()));
+}
+
 std::string batch_command(const Plan& plan, const std::string& chunk, const std::string& jobs) {
-    return fmt::format("{} batch {} --cells chunks/{}.json -o parts/{} -j {} -q{}", plan.program,
-                       quoted(plan.batch.string()), chunk, chunk, jobs,
+    const std::string folder = quoted(plan.folder.string());
+    return fmt::format("{} batch {} --cells {}/chunks/{}.json -o {}/parts/{} -j {} -q{}", plan.program,
+                       quoted(plan.batch), folder, chunk, folder, chunk, jobs,
                        plan.cache.empty() ? "" : " --cache " + quoted(plan.cache.string()));
 }
 
 std::string merge_command(const Plan& plan) {
-    return fmt::format("{} runs merge parts/* -o {}", plan.program, quoted(plan.result.string()));
+    return fmt::format("{} runs merge {}/parts/* -o {}", plan.program, quoted(plan.folder.string()),
+                       quoted(plan.result.string()));
 }
 
 std::string page_command(const Plan& plan) {
@@ -92,23 +100,22 @@ Files slurm_files(const Plan& plan) {
                    "#SBATCH --array=1-{}\n"
                    "#SBATCH --output=logs/%4a.txt\n"
                    "# One chunk per job. Exit code 1 means that scans failed, which the report shows.\n"
-                   "cd {} || exit 3\n"
+                   "{}\n"
                    "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
                    "{}\n"
                    "code=$?\n"
                    "[ $code -eq 1 ] && exit 0\n"
                    "exit $code\n",
-                   plan.chunks, quoted(plan.folder.string()),
-                   batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
+                   plan.chunks, change_directory(plan), batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
     const std::string merge = head + fmt::format(
                                          "#SBATCH --output=logs/merge.txt\n"
                                          "# Makes one run of all chunks, and its report.\n"
-                                         "cd {} || exit 3\n"
+                                         "{}\n"
                                          "{}\n"
                                          "code=$?\n"
                                          "{} || :\n"
                                          "exit $code\n",
-                                         quoted(plan.folder.string()), merge_command(plan), page_command(plan));
+                                         change_directory(plan), merge_command(plan), page_command(plan));
     const std::string submit = fmt::format(
         "#!/bin/sh\n"
         "# submit.sh [CHUNKS]: submits all chunks, or those with these numbers, as 3,17; then the merge, which waits "
@@ -126,28 +133,32 @@ Files slurm_files(const Plan& plan) {
 /// In double quotes, for Python.
 std::string python_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
-/// A command inside shell text of Snakemake, in which braces are for wildcards.
-std::string snakemake_shell(const std::string& command) {
+/// Shell text of Snakemake, in which single braces are for wildcards.
+std::string snakemake_shell(const std::string& text) {
     std::string all;
-    for (const char c : command) {
+    for (const char c : text) {
         if (c == '{' || c == '}') all += c;
         all += c;
     }
     return all;
 }
 
+/// The plan for commands in shell text of Snakemake.
+Plan snakemake_shell(Plan plan) {
+    for (std::string* text : {&plan.batch, &plan.program}) *text = snakemake_shell(*text);
+    for (fs::path* path : {&plan.directory, &plan.folder, &plan.result, &plan.cache})
+        *path = snakemake_shell(path->string());
+    return plan;
+}
+
 Files snakemake_files(const Plan& plan) {
-    std::string chunk = snakemake_shell(batch_command(plan, "CHUNK", "THREADS"));
-    const auto replace = [&](const std::string& from, const std::string& to) {
-        for (std::size_t at = 0; (at = chunk.find(from, at)) != std::string::npos; at += to.size())
-            chunk.replace(at, from.size(), to);
+    const Plan in_shell = snakemake_shell(plan);
+    const auto command = [&](const std::string& text, const std::string& exit) {
+        return python_text(fmt::format("set +e; ({}; {}) > {{log}} 2>&1; {}", change_directory(in_shell), text, exit));
     };
-    replace("CHUNK", "{wildcards.chunk}");
-    replace("THREADS", "{threads}");
     // Exit code 1: scans failed; 4: the gate tripped. The report shows both.
-    const std::string code_of_chunk = " > {log} 2>&1; code=$?; [ $code -eq 1 ] && code=0; exit $code";
-    const std::string code_of_merge =
-        " > {log} 2>&1; code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
+    const std::string code_of_chunk = "code=$?; [ $code -eq 1 ] && code=0; exit $code";
+    const std::string code_of_merge = "code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
     const std::string text = fmt::format(
         "# Runs the batch {0} in {1} chunks, then makes one run of them, and its report.\n"
         "#   snakemake -j 4\n"
@@ -182,9 +193,8 @@ Files snakemake_files(const Plan& plan) {
         "    log: \"logs/report.txt\"\n"
         "    shell: {9}\n",
         plan.name, plan.chunks, python_text(plan.folder.string()), plan.chunks, plan.cores, plan.megabytes,
-        plan.minutes, python_text("set +e; " + chunk + code_of_chunk),
-        python_text("set +e; " + snakemake_shell(merge_command(plan)) + code_of_merge),
-        python_text("set +e; " + snakemake_shell(page_command(plan)) + " > {log} 2>&1; exit 0"));
+        plan.minutes, command(batch_command(in_shell, "{wildcards.chunk}", "{threads}"), code_of_chunk),
+        command(merge_command(in_shell), code_of_merge), command(page_command(in_shell), "exit 0"));
     return {{"Snakefile", text}};
 }
 
@@ -231,8 +241,9 @@ int export_batch(const Options& options) {
 
     Plan plan;
     plan.name = checked.batch.name;
-    plan.batch = fs::absolute(file);
+    plan.batch = file;
     plan.folder = fs::absolute(options.folder);
+    plan.directory = fs::path(file).is_absolute() ? plan.folder : fs::current_path();
     plan.result = fs::absolute(result);
     if (!options.cache.empty()) plan.cache = fs::absolute(options.cache);
     plan.program = options.program;
@@ -302,7 +313,9 @@ void add_export(CLI::App& app, Action& chosen) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1024));
     command.add_option("--cache", options.cache, "A cache that all machines share. Default: each machine's own");
-    command.add_option("--program", options.program, "The command that starts Scanmill on the machines")
+    command
+        .add_option("--program", options.program,
+                    "The command that starts Scanmill on the machines. The jobs work in the current folder")
         ->capture_default_str();
     command.add_flag("--dry-run", options.dry_run, "Print the expected cost, and write nothing");
     command.add_flag("--json", options.json, "Print the result as JSON");

@@ -36,7 +36,7 @@ scanmill batch library.yaml -o one -q >/dev/null
 
 # same_outputs FOLDER: the meshes are those of the one run, byte for byte.
 same_outputs() {
-    for file in one/*.ply; do cmp "$file" "$1/$(basename "$file")" || fail "$1 differs"; done
+    for file in one/*.ply one/*.ply.json; do cmp "$file" "$1/$(basename "$file")" || fail "$1 differs"; done
     [ "$(scanmill report "$1" | sed -n 2p)" = "8 cells: 8 new" ] || fail "the report of $1 differs"
 }
 

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `batch --shard` and `runs merge`: the merged shards are the run of one machine.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include <functional>
 
-#include <algorithm>
-#include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
-
-#include "support/folders.hpp"
-#include "support/program.hpp"
-#include "support/temporary_folder.hpp"
+#include "runner/divided_batch.hpp"
+#include "scanmill/records/run_records.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -20,82 +13,40 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Shards : public testing::Test {
+class Shards : public DividedBatch {
 protected:
-    Shards() {
-        fs::create_directories(folder_ / "scans");
-        for (int scan = 0; scan < 7; ++scan)
-            folder_.write("scans/s" + std::to_string(scan) + ".xyz",
-                          "0 0 0\n1 0 0\n0 2 0\n1 2 " + std::to_string(scan + 2) + "\n");
-        folder_.write("w.yaml",
-                      "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n"
-                      "  - voxel-thin: {bin-size: {sweep: [0.1 u, 3 u]}}\n    expect: {points: '> 2'}\n"
-                      "outputs: {'{scan}-{variant}.ply': voxel-thin}\n");
-        folder_.write("all.yaml",
-                      "scanmill: 1\nname: all\ninputs: {views: [points]}\nsteps:\n  - merge:\n"
-                      "outputs: {'together.ply': merge}\n");
-        write_batch("points: exact");
+    /// Changes the record of the only run in the folder.
+    void change_record(const std::string& folder, const std::function<void(RunDetails&)>& change) {
+        const fs::path file = folder_ / folder / records_file;
+        RunDetails run = RunRecords::read(file).run(1);
+        change(run);
+        fs::remove(file);
+        RunRecords records = RunRecords::append_to(file);
+        records.end(records.begin(run.start, run.summary.started), run.steps, run.cells, run.summary.outcome.value(),
+                    run.summary.seconds);
     }
-    void write_batch(const std::string& gate) {
-        folder_.write("b.yaml",
-                      "scanmill: 1\nbatch: b\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"
-                      "gate: {" +
-                          gate + "}\n");
+    void expect_refusal(const std::vector<std::string>& folders, const std::string& sentence) {
+        const ProgramResult merged = merge(folders);
+        EXPECT_EQ(merged.exit_code, 2);
+        EXPECT_THAT(merged.err, AllOf(HasSubstr(sentence), HasSubstr("hint: ")));
+        EXPECT_FALSE(fs::exists(folder_ / "whole/scanmill.sqlite"));
     }
-    ProgramResult scanmill(const std::vector<std::string>& arguments) {
-        return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
-    }
-    ProgramResult shard(const std::string& text, const std::string& out) {
-        return scanmill({"batch", "b.yaml", "--shard", text, "-o", out, "-q"});
-    }
-    void run_shards(int count) {
-        for (int number = 1; number <= count; ++number)
-            shard(std::to_string(number) + "/" + std::to_string(count), "p" + std::to_string(number));
-    }
-    ProgramResult merge(const std::vector<std::string>& folders, const std::string& out = "whole") {
-        std::vector<std::string> arguments{"runs", "merge"};
-        arguments.insert(arguments.end(), folders.begin(), folders.end());
-        arguments.insert(arguments.end(), {"-o", out});
-        return scanmill(arguments);
-    }
-    /// By name, the bytes of the outputs below the folder.
-    std::map<std::string, std::string> outputs(const std::string& out) {
-        std::map<std::string, std::string> files;
-        for (const auto& entry : fs::recursive_directory_iterator(folder_ / out))
-            if (entry.is_regular_file() && !entry.path().filename().string().starts_with("scanmill."))
-                files[fs::relative(entry.path(), folder_ / out).string()] = content_of(entry.path());
-        return files;
-    }
-    /// What the report says, without clocks, costs and folders.
-    nlohmann::json report(const std::string& out) {
-        nlohmann::json all = nlohmann::json::parse(scanmill({"report", out, "--json"}).out)["report"];
-        nlohmann::json cells = nlohmann::json::array();
-        for (nlohmann::json cell : all["cells"]) {
-            for (const char* member : {"seconds", "costs", "command"}) cell.erase(member);
-            for (auto& reason : cell["reasons"]) reason = "";
-            cells.push_back(cell);
-        }
-        return {{"cells", cells}, {"verdict", all["verdict"]}, {"counts", all["counts"]}, {"rules", all["rules"]}};
-    }
-
-    TemporaryFolder folder_;
 };
 
 TEST_F(Shards, MergedInAnyOrder_AreTheRunOfOneMachine) {
     scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
     const auto outputs_of_one = outputs("one");
     ASSERT_GE(outputs_of_one.size(), 2u * 8);
-    for (const int count : {1, 3, 8}) {
+    for (const int count : {1, 3, 7, 8}) {
         SCOPED_TRACE(count);
         run_shards(count);
-        std::vector<std::string> folders;
-        for (int number = count; number >= 1; --number) folders.push_back("p" + std::to_string(number));
         const std::string out = "whole" + std::to_string(count);
-        const ProgramResult merged = merge(folders, out);
+        const ProgramResult merged = merge_shuffled("p", count, 3, out);
         EXPECT_EQ(merged.exit_code, 1) << merged.err << "cells with two points fail, as in one run";
         EXPECT_EQ(report(out), report("one"));
-        EXPECT_EQ(outputs(out), outputs_of_one);
-        for (const std::string& folder : folders) {
+        EXPECT_THAT(differences(outputs(out), outputs_of_one), testing::IsEmpty());
+        for (int number = 1; number <= count; ++number) {
+            const std::string folder = "p" + std::to_string(number);
             EXPECT_TRUE(outputs(folder).empty()) << "the outputs were moved";
             fs::remove_all(folder_ / folder);
         }
@@ -136,13 +87,6 @@ TEST_F(Shards, AnInterruptedMerge_IsRepeated) {
 TEST_F(Shards, WhatDoesNotFit_IsRefusedAndNothingMoves) {
     run_shards(3);
     const auto before = outputs("p1");
-    const auto expect_refusal = [&](const std::vector<std::string>& folders, const std::string& sentence) {
-        const ProgramResult merged = merge(folders);
-        EXPECT_EQ(merged.exit_code, 2);
-        EXPECT_THAT(merged.err, AllOf(HasSubstr(sentence), HasSubstr("hint: ")));
-        EXPECT_FALSE(fs::exists(folder_ / "whole/scanmill.sqlite"));
-        EXPECT_EQ(outputs("p1"), before);
-    };
     expect_refusal({"p1", "p3"}, "1 shard is missing: 2/3");
     expect_refusal({"p1", "p2", "p2", "p3"}, "shard 2/3 is given twice: in 'p2' and in 'p2'");
     shard("2/4", "of4");
@@ -157,6 +101,101 @@ TEST_F(Shards, WhatDoesNotFit_IsRefusedAndNothingMoves) {
     expect_refusal({"p1", "changed", "p3"}, "the batch's scans, workflows or values were changed between them");
     folder_.write("p2/s1-bin-size=0.1u.ply", "mine");
     expect_refusal({"p1", "p2", "p3"}, "is missing or has changed");
+    EXPECT_EQ(outputs("p1"), before);
+}
+
+TEST_F(Shards, OfAnotherBatch_AreRefused) {
+    run_shards(2);
+    folder_.write("other.yaml",
+                  "scanmill: 1\nbatch: other\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"
+                  "gate: {points: exact}\n");
+    scanmill({"batch", "other.yaml", "--shard", "2/2", "-o", "other", "-q"});
+    expect_refusal({"p1", "other"}, "the batch differs, 'b' and 'other'");
+    write_batch("points: +1 %");
+    shard("2/2", "gated");
+    expect_refusal({"p1", "gated"}, "the gate differs, 'points exact' and 'points +1 %'");
+}
+
+TEST_F(Shards, OfAnotherVersionOrBuild_AreRefused) {
+    run_shards(2);
+    change_record("p2", [](RunDetails& run) { run.start.version = "0.0.9"; });
+    expect_refusal({"p1", "p2"}, "the version of Scanmill differs");
+    shard("2/2", "again");
+    change_record("again", [](RunDetails& run) {
+        for (StepRecord& step : run.steps)
+            if (step.filter == "voxel-thin") step.build = "0123";
+    });
+    expect_refusal({"p1", "again"}, "they ran different builds of the filter 'voxel-thin'");
+    EXPECT_EQ(merge({"p1", "p2"}).exit_code, 2);
+}
+
+TEST_F(Shards, OnMachinesWhoseClocksDisagree_AreMergedInTheOrderOfTheBatch) {
+    scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
+    run_shards(3);
+    double longest = 0;
+    const auto started = [&](const std::string& time) {
+        return [&, time](RunDetails& run) {
+            run.summary.started = time;
+            longest = std::max(longest, run.summary.seconds);
+        };
+    };
+    change_record("p1", started("2026-03-01T03:00:00.000Z"));
+    change_record("p2", started("2026-03-01T01:00:00.000Z"));
+    change_record("p3", started("2026-03-01T02:00:00.000Z"));
+    EXPECT_EQ(merge({"p2", "p1", "p3"}).exit_code, 1);
+    EXPECT_EQ(report("whole"), report("one"));
+    EXPECT_THAT(differences(outputs("whole"), outputs("one")), testing::IsEmpty());
+    const RunSummary whole = RunRecords::read(folder_ / "whole/scanmill.sqlite").summary(1);
+    EXPECT_EQ(whole.started, "2026-03-01T01:00:00.000Z") << "the earliest that a clock showed";
+    EXPECT_EQ(whole.seconds, longest) << "not the two hours between the clocks";
+}
+
+TEST_F(Shards, WithOtherCaches_AreMerged) {
+    scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
+    scanmill({"batch", "b.yaml", "-o", "earlier", "-q", "--cache", "cache2", "--keep", "always"});
+    scanmill({"batch", "b.yaml", "--shard", "1/3", "-o", "p1", "-q", "--cache", "cache1"});
+    scanmill({"batch", "b.yaml", "--shard", "2/3", "-o", "p2", "-q", "--cache", "cache2"});
+    scanmill({"batch", "b.yaml", "--shard", "3/3", "-o", "p3", "-q", "--no-cache"});
+    const ProgramResult merged = merge({"p1", "p2", "p3"});
+    EXPECT_EQ(merged.exit_code, 1);
+    EXPECT_THAT(merged.err, testing::IsEmpty());
+    EXPECT_EQ(report("whole"), report("one"));
+    EXPECT_THAT(differences(outputs("whole"), outputs("one")), testing::IsEmpty());
+}
+
+TEST_F(Shards, WithAReadOnlyCache_WarnOnceAndAreMerged) {
+    scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
+    const auto run = [&](const std::string& number, bool is_owner) {
+        ProgramOptions own = options();
+        own.without_rights = !is_owner;
+        return scanmill_program({"batch", "b.yaml", "--shard", number + "/2", "-o", "p" + number, "-q", "--cache",
+                                 "locked", "--keep", "always"},
+                                own);
+    };
+    run("1", true);
+    fs::permissions(folder_.path(), fs::perms::all);
+    fs::permissions(folder_ / "locked",
+                    fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+    const ProgramResult second = run("2", false);
+    if (second.exit_code > 100) GTEST_SKIP() << "the program may not be run without root's rights here";
+    EXPECT_EQ(second.exit_code, 1) << "cells with two points fail, as in one run";
+    EXPECT_THAT(second.err, AllOf(HasSubstr("locked' does not store new results"), HasSubstr("choose another")));
+    EXPECT_EQ(second.err.find("does not store"), second.err.rfind("does not store")) << "several workers, one sentence";
+    EXPECT_EQ(merge({"p1", "p2"}).exit_code, 1);
+    EXPECT_THAT(differences(outputs("whole"), outputs("one")), testing::IsEmpty());
+}
+
+TEST_F(Shards, ChunkOfAChangedBatch_IsRefused) {
+    scanmill({"export", "slurm", "b.yaml", "-o", "cluster", "--minutes", "0.0001"});
+    folder_.write("scans/s9.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 9\n");
+    const auto refused = [&](const std::string& file, const std::string& sentence) {
+        const ProgramResult result = scanmill({"batch", "b.yaml", "--cells", file, "-o", "p1"});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_THAT(result.err, AllOf(HasSubstr(sentence), HasSubstr("hint: ")));
+    };
+    refused("cluster/chunks/0001.json", "the batch has changed since 'cluster/chunks/0001.json' was written");
+    refused("b.yaml", "'b.yaml' is not the file of a chunk");
+    refused("cluster/chunks/0042.json", "there is no such file");
 }
 
 TEST_F(Shards, WrongNumbers_AreRefused) {
@@ -168,13 +207,6 @@ TEST_F(Shards, WrongNumbers_AreRefused) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "--shard", "1/2", "--scan", "scans/s1.xyz"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs", "merge", "p1"}).exit_code, 2) << "-o is missing";
-}
-
-TEST_F(Shards, AKilledShard_IsRunAgain) {
-    run_shards(2);
-    // A run without an end is one that was killed.
-    scanmill({"batch", "b.yaml", "--shard", "2/2", "-o", "p2", "-q", "-j", "1"});
-    EXPECT_EQ(merge({"p1", "p2"}).exit_code, 1);
 }
 
 }  // namespace

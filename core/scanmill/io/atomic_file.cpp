@@ -7,10 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -29,8 +33,41 @@ std::string reason_of(int number) { return std::generic_category().message(numbe
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
+constexpr std::string_view part_prefix = ".scanmill-", part_suffix = ".part";
+
+/// The name of this machine, as file names may contain it.
+std::string host() {
+    std::array<char, 65> name{};
+    std::string text = ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
+    return text;
+}
+
+/// Machines that share a folder have processes of equal numbers.
 fs::path temporary_name(const fs::path& folder, unsigned attempt) {
-    return folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
+    return folder / fmt::format("{}{}-{}-{}{}", part_prefix, host(), ::getpid(), attempt, part_suffix);
+}
+
+struct PartName {
+    std::string host;
+    int process = 0;
+};
+
+std::optional<PartName> part_name(std::string name) {
+    if (!name.starts_with(part_prefix) || !name.ends_with(part_suffix)) return std::nullopt;
+    name = name.substr(part_prefix.size(), name.size() - part_prefix.size() - part_suffix.size());
+    const std::size_t attempt = name.rfind('-');
+    if (attempt == 0 || attempt == std::string::npos) return std::nullopt;
+    const std::size_t process = name.rfind('-', attempt - 1);
+    if (process == std::string::npos) return std::nullopt;
+    PartName part{name.substr(0, process), std::atoi(name.c_str() + process + 1)};
+    return part.process > 0 ? std::optional(std::move(part)) : std::nullopt;
+}
+
+bool is_same_file(const fs::path& file, const struct stat& other) {
+    struct stat status;
+    return ::lstat(file.c_str(), &status) == 0 && status.st_dev == other.st_dev && status.st_ino == other.st_ino;
 }
 
 /// Makes the rename survive a power cut. Errors are ignored: some network file systems cannot sync a folder.
@@ -43,7 +80,10 @@ void sync_folder(const fs::path& folder) {
 
 /// Whether `target` is a regular file with the bytes of the open file.
 bool holds_bytes_of(const fs::path& target, int descriptor) {
-    const int existing = ::open(target.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    int existing = -1;
+    // ESTALE: another machine has just replaced the file.
+    for (int attempt = 0; existing < 0 && attempt < 3 && (attempt == 0 || errno == ESTALE); ++attempt)
+        existing = ::open(target.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (existing < 0) return false;
     struct stat old_status, new_status;
     bool is_equal = ::fstat(existing, &old_status) == 0 && ::fstat(descriptor, &new_status) == 0 &&
@@ -60,6 +100,31 @@ bool holds_bytes_of(const fs::path& target, int descriptor) {
     }
     ::close(existing);
     return is_equal;
+}
+
+bool holds_bytes_of(const fs::path& target, const fs::path& file) {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool is_equal = holds_bytes_of(target, descriptor);
+    ::close(descriptor);
+    return is_equal;
+}
+
+/// Gives the file `part`, whose status is `status`, the name `target` only.
+void move_into_place(const fs::path& part, const fs::path& target, const struct stat& status) {
+    // link() does not replace a file: of several writers of equal bytes, the first wins. A network file system may
+    // report that the name exists because its first answer was lost. Then rename() would leave both names.
+    if (::link(part.c_str(), target.c_str()) == 0 ||
+        (errno == EEXIST && (is_same_file(target, status) || holds_bytes_of(target, part)))) {
+        ::unlink(part.c_str());
+        return;
+    }
+    if (::rename(part.c_str(), target.c_str()) == 0) return;
+    // Nobody else removes the part. If it is gone, rename() moved it, and its first answer was lost.
+    const int reason = errno;
+    struct stat ignored;
+    const bool is_moved = ::lstat(part.c_str(), &ignored) != 0 && ::lstat(target.c_str(), &ignored) == 0;
+    if (reason != ENOENT || !is_moved) throw Error("cannot be written: {}", reason_of(reason));
 }
 
 }  // namespace
@@ -113,7 +178,9 @@ void AtomicFile::commit(Sync sync) {
         return;
     }
     if (sync == Sync::yes && ::fsync(descriptor_) != 0) throw_failed();
-    // linkat() cannot replace a file, rename() can. A file without a name therefore gets a temporary name first.
+    struct stat status;
+    if (::fstat(descriptor_, &status) != 0) throw_failed();
+    // A file without a name gets a temporary name first, because the target must not appear before close() succeeds.
     const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
     const fs::path folder = folder_of(target_);
     for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
@@ -124,25 +191,28 @@ void AtomicFile::commit(Sync sync) {
             throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
     }
     if (::close(std::exchange(descriptor_, -1)) != 0) throw_failed();
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw Error("cannot be written: {}", reason_of(errno));
+    move_into_place(temporary_, target_, status);
     temporary_.clear();
     if (sync == Sync::yes) sync_folder(folder);
 }
 
-void remove_abandoned_parts(const fs::path& folder) {
-    constexpr std::string_view prefix = ".scanmill-", suffix = ".part";
+bool is_abandoned_part(const fs::path& file) {
+    using namespace std::chrono_literals;
+    const std::optional<PartName> part = part_name(file.filename().string());
+    if (!part) return false;
+    const bool is_own = part->host == host();
+    if (is_own && (::kill(part->process, 0) == 0 || errno != ESRCH)) return false;
     std::error_code gone;
-    for (fs::directory_iterator entry(folder, gone), end; !gone && entry != end; entry.increment(gone)) {
-        const std::string name = entry->path().filename().string();
-        if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
-        const int process = std::atoi(name.c_str() + prefix.size());
-        if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
-        // A process on another machine may still be writing the file.
-        constexpr std::chrono::minutes settled(1);
-        std::error_code ignored;
-        const auto written = fs::last_write_time(entry->path(), ignored);
-        if (!ignored && fs::file_time_type::clock::now() - written > settled) fs::remove(entry->path(), ignored);
-    }
+    const auto written = fs::last_write_time(file, gone);
+    // A process in another container may still be writing a file of this machine.
+    const std::chrono::minutes settled = is_own ? 1min : 24h;
+    return !gone && fs::file_time_type::clock::now() - written > settled;
+}
+
+void remove_abandoned_parts(const fs::path& folder) {
+    std::error_code gone;
+    for (fs::directory_iterator entry(folder, gone), end; !gone && entry != end; entry.increment(gone))
+        if (std::error_code ignored; is_abandoned_part(entry->path())) fs::remove(entry->path(), ignored);
 }
 
 }  // namespace scanmill

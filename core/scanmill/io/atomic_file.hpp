@@ -3,9 +3,13 @@
 /// A file that appears whole or not at all.
 ///
 /// Bytes go to an unnamed file on the target's file system. commit() writes them to disk (fsync), gives the file a
-/// temporary name (`.scanmill-….part`) and renames it to the target. A target that already holds these bytes stays as
-/// it is. Without commit() no file is left, even if the process is killed. On file systems without unnamed files, the
-/// temporary name exists from the start and stays if the process is killed; remove_abandoned_parts() removes it.
+/// temporary name (`.scanmill-HOST-PROCESS-….part`), and then that of the target. Without commit() no file is left,
+/// even if the process is killed. On file systems without unnamed files, the temporary name exists from the start and
+/// stays if the process is killed; remove_abandoned_parts() removes it.
+///
+/// Processes of any machines may write the same target at once, also on a network file system: no locks are used. A
+/// target that already holds the same bytes stays the same file, so that machines that have mapped it can go on reading
+/// it. A call that the server carried out counts as done, even if its answer was lost and the repeated call failed.
 
 #include <filesystem>
 #include <string_view>
@@ -35,7 +39,11 @@ private:
     int descriptor_ = -1;
 };
 
-/// Removes temporary files of processes that no longer run, a minute after their last change.
+/// Whether the file is a temporary file that no process will complete. On the machine that wrote it, its process no
+/// longer runs, and its last change is a minute ago. On other machines, which cannot see the process and whose clocks
+/// may differ by hours, the last change is a day ago.
+bool is_abandoned_part(const std::filesystem::path& file);
+
 void remove_abandoned_parts(const std::filesystem::path& folder);
 
 }  // namespace scanmill

@@ -2,18 +2,22 @@
 #include "scanmill/cache/cache.hpp"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/hash.hpp"
+#include "scanmill/io/atomic_file.hpp"
 
 namespace scanmill {
 
@@ -33,13 +37,8 @@ struct CachedFile {
 
 std::int64_t nanoseconds(const timespec& time) { return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec; }
 
-/// Whether another process may be writing the file. A temporary file counts as abandoned after an hour.
-bool is_being_written(const fs::path& file, std::int64_t used) {
-    constexpr std::int64_t hour = 3600 * std::int64_t(1'000'000'000);
-    timespec now;
-    ::clock_gettime(CLOCK_REALTIME, &now);
-    return file.filename().string().starts_with('.') && nanoseconds(now) - used < hour;
-}
+/// Temporary files, and those that network file systems keep for processes that have them open.
+bool is_hidden(const fs::path& file) { return file.filename().string().starts_with('.'); }
 
 std::vector<CachedFile> all_files(const fs::path& folder) {
     std::vector<CachedFile> files;
@@ -49,9 +48,9 @@ std::vector<CachedFile> all_files(const fs::path& folder) {
              entry.increment(gone)) {
             struct stat properties;
             if (::stat(entry->path().c_str(), &properties) != 0 || !S_ISREG(properties.st_mode)) continue;
-            const std::int64_t used = nanoseconds(properties.st_mtim);
-            if (!is_being_written(entry->path(), used))
-                files.push_back({entry->path(), kind, static_cast<u64>(properties.st_size), used});
+            if (is_hidden(entry->path()) && !is_abandoned_part(entry->path())) continue;
+            files.push_back(
+                {entry->path(), kind, static_cast<u64>(properties.st_size), nanoseconds(properties.st_mtim)});
         }
     }
     return files;
@@ -140,9 +139,31 @@ std::vector<CacheUse> use_by_age(const std::vector<CachedFile>& files) {
     return uses;
 }
 
+bool is_on_network(const fs::path& folder) {
+    constexpr std::array<unsigned, 8> network{NFS_SUPER_MAGIC, SMB_SUPER_MAGIC,  SMB2_SUPER_MAGIC, CIFS_SUPER_MAGIC,
+                                              AFS_SUPER_MAGIC, CODA_SUPER_MAGIC, V9FS_MAGIC,       FUSE_SUPER_MAGIC};
+    struct statfs system;
+    return ::statfs(folder.c_str(), &system) == 0 &&
+           std::ranges::find(network, static_cast<unsigned>(system.f_type)) != network.end();
+}
+
+fs::path tag_of(const fs::path& folder) { return folder / "CACHEDIR.TAG"; }
+
+/// The time of the clock that sets the times of files in the folder, in nanoseconds since 1970. The clock of a file
+/// server may differ from that of this machine.
+std::int64_t now_in(const fs::path& folder) {
+    const fs::path tag = tag_of(folder);
+    timespec now;
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    struct stat properties;
+    if (::utimensat(AT_FDCWD, tag.c_str(), nullptr, 0) == 0 && ::stat(tag.c_str(), &properties) == 0)
+        now = properties.st_mtim;
+    return nanoseconds(now);
+}
+
 /// Makes backup programs skip the folder: https://bford.info/cachedir/
 void mark_as_cache(const fs::path& folder) {
-    const fs::path tag = folder / "CACHEDIR.TAG";
+    const fs::path tag = tag_of(folder);
     std::error_code ignored;
     if (fs::exists(tag, ignored)) return;
     std::ofstream(tag) << "Signature: 8a477f597d28d172789f06886806bc55\n# Results that scanmill can compute again.\n";
@@ -188,18 +209,27 @@ template <class Read>
 auto Cache::read(std::string_view kind, std::string_view name, Read&& read, bool marks_use) const
     -> decltype(read(fs::path())) {
     const fs::path file = path_of(kind, name);
-    try {
-        auto found = read(file);
-        if (found && marks_use)
-            ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // sets the time to now; fails on a read-only folder
-        return found;
-    } catch (const Error& error) {
+    for (int attempt = 1;; ++attempt) {
         std::error_code trouble;
-        if (!fs::exists(file, trouble)) return std::nullopt;  // another process removed it
-        const bool removed = fs::remove(file, trouble);
-        warn(fmt::format("an entry of the cache {} and counts as missing: {}",
-                         removed ? "was removed" : "cannot be removed", error.sentence()));
-        return std::nullopt;
+        try {
+            auto found = read(file);
+            if (found && marks_use)
+                ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // sets the time to now; fails on a read-only folder
+            return found;
+        } catch (const DamagedFile& error) {
+            if (!fs::exists(file, trouble)) return std::nullopt;  // another process removed it
+            const bool removed = fs::remove(file, trouble);
+            warn(fmt::format("an entry of the cache {} and counts as missing: {}",
+                             removed ? "was removed" : "cannot be removed", error.sentence()));
+            return std::nullopt;
+        } catch (const Error& error) {
+            if (!fs::exists(file, trouble)) return std::nullopt;
+            // On a network file system, a file that was replaced on another machine can be read at the next attempt.
+            constexpr int most_attempts = 3;
+            if (attempt < most_attempts) continue;
+            warn(fmt::format("an entry of the cache counts as missing: {}", error.sentence()));
+            return std::nullopt;
+        }
     }
 }
 
@@ -211,7 +241,11 @@ std::optional<StepResult> Cache::step(std::string_view run_key) const {
     return read("steps", run_key, [](const fs::path& file) -> std::optional<StepResult> {
         const std::optional<std::string> bytes = read_checked(file, "step");
         if (!bytes) return std::nullopt;
-        return step_result_from(*bytes);
+        try {
+            return step_result_from(*bytes);
+        } catch (const Error& error) {
+            throw DamagedFile(error);
+        }
     });
 }
 
@@ -243,7 +277,9 @@ bool Cache::write(std::string_view kind, std::string_view name, Write&& write, b
     } catch (const Error& error) {
         // The sentence does not name the file, so that all worker processes give the same warning.
         if (!write_failed_.exchange(true))
-            warn(fmt::format("the cache '{}' does not store new results: {}", folder_.string(), error.sentence()));
+            warn(fmt::format(
+                "the cache '{}' does not store new results: {}; choose another folder if they should be kept",
+                folder_.string(), error.sentence()));
         return false;
     }
 }
@@ -265,21 +301,26 @@ std::string Cache::file_hash(const fs::path& file) {
     std::error_code unknown;
     const fs::path whole = fs::absolute(file, unknown);
     if (unknown || ::stat(whole.c_str(), &properties) != 0) return content_hash(file);  // throws
-    const std::string description = fmt::format(
-        "{} {} {} {}.{:09} {}.{:09}", properties.st_dev, properties.st_ino, properties.st_size,
-        properties.st_mtim.tv_sec, properties.st_mtim.tv_nsec, properties.st_ctim.tv_sec, properties.st_ctim.tv_nsec);
-    const std::string name = KeyBuilder().field("file", whole.string()).key();
+    const std::string description =
+        fmt::format("{} {} {}.{:09} {}.{:09}", properties.st_ino, properties.st_size, properties.st_mtim.tv_sec,
+                    properties.st_mtim.tv_nsec, properties.st_ctim.tv_sec, properties.st_ctim.tv_nsec);
+    // A device has another number on every machine. Machines must not overwrite each other's entries.
+    const std::string name =
+        KeyBuilder().field("file", whole.string()).field("device", std::to_string(properties.st_dev)).key();
+    constexpr time_t settled = 2;
+    const time_t changed = std::max(properties.st_mtim.tv_sec, properties.st_ctim.tv_sec);
     const auto memo = read(
         "files", name, [](const fs::path& of) { return read_checked(of, "file"); }, false);
     if (memo && memo->starts_with(description + " ")) {
         // File systems set both times: when the hash was stored, and when the file last changed.
         struct stat written;
-        constexpr time_t settled = 2;
-        if (::stat(path_of("files", name).c_str(), &written) == 0 &&
-            written.st_mtim.tv_sec - std::max(properties.st_mtim.tv_sec, properties.st_ctim.tv_sec) > settled)
+        if (::stat(path_of("files", name).c_str(), &written) == 0 && written.st_mtim.tv_sec - changed > settled)
             return memo->substr(description.size() + 1);
     }
+    timespec now;
+    ::clock_gettime(CLOCK_REALTIME, &now);
     std::string hash = content_hash(file);
+    if (now.tv_sec - changed <= settled) return hash;
     write(
         "files", name, [&](const fs::path& to) { write_checked(to, "file", description + " " + hash); }, true);
     return hash;
@@ -302,15 +343,23 @@ CacheInfo Cache::info() const {
 
 u64 Cache::evict() {
     std::vector<CachedFile> files = all_files(folder_);
-    u64 total = 0;
-    for (const CachedFile& file : files) total += file.bytes;
-    if (total <= limit_) return 0;
-    std::ranges::sort(files, {}, &CachedFile::used);
-    const u64 wanted = limit_ / 10 * 9;
-    u64 removed = 0;
-    for (const CachedFile& file : files) {
-        if (total - removed <= wanted) break;
+    u64 total = 0, removed = 0;
+    std::erase_if(files, [&](const CachedFile& file) {
+        if (!is_hidden(file.path)) return false;
         removed += remove(file);
+        return true;
+    });
+    for (const CachedFile& file : files) total += file.bytes;
+    if (total <= limit_) return removed;
+    std::ranges::sort(files, {}, &CachedFile::used);
+    constexpr std::int64_t hour = 3600 * std::int64_t(1'000'000'000);
+    const std::int64_t newest =
+        is_on_network(folder_) ? now_in(folder_ / layout) - hour : std::numeric_limits<std::int64_t>::max();
+    const u64 wanted = limit_ / 10 * 9;
+    for (const CachedFile& file : files) {
+        if (total <= wanted || file.used > newest) break;
+        removed += remove(file);
+        total -= file.bytes;  // also if another process has just removed it
     }
     return removed;
 }

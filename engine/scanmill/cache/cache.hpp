@@ -5,9 +5,12 @@
 /// Three folders hold files that are named by a 128-bit hash and never change: plans/ (plan key → run key of a step),
 /// steps/ (run key → StepResult) and values/ (content → value file). The folder files/ stores the hashes of scans.
 ///
-/// Any number of processes may read, write, clear and evict at once. A file appears whole or not at all. Runs compute
-/// missing results again. A damaged file is removed with a warning and counts as missing. A read-only cache can be
-/// read.
+/// Any number of processes may read, write, clear and evict at once, on any machines that share the folder: there are
+/// no locks, and a file appears whole or not at all (AtomicFile). Runs compute missing results again. A damaged file is
+/// removed with a warning and counts as missing. A read-only cache can be read.
+///
+/// On a network file system, a file that one machine removes can no longer be read by others that have mapped it.
+/// evict() therefore keeps files that were used within the last hour, and clear() must not be called during runs.
 
 #include <atomic>
 #include <cstdint>
@@ -107,15 +110,17 @@ public:
     bool keep_step(std::string_view run_key, const StepResult& result);
     bool keep_value(const EncodedValue& value);
 
-    /// The hash of a file's bytes, as content_hash() returns it. The cache stores it with the file's path, size, inode
-    /// and times. An unchanged file is not read again, unless it was hashed within two seconds after it was written: a
-    /// later change might not show in its times. Throws Error as content_hash() does.
+    /// The hash of a file's bytes, as content_hash() returns it. The cache stores it with the file's path, device,
+    /// size, inode and times. An unchanged file is not read again, unless it was hashed within two seconds after it was
+    /// written, by the clock of this machine or by that of the cache's: a later change might not show in its times.
+    /// Throws Error as content_hash() does.
     std::string file_hash(const std::filesystem::path& file);
 
     /// Cost: one stat() per file, and reading the results of all steps, without their values.
     CacheInfo info() const;
     /// If the limit is exceeded, removes the least recently used files until the rest takes nine tenths of the limit.
-    /// Returns the number of bytes removed. Cost: one stat() per file.
+    /// Also removes temporary files of writers that were killed. Returns the number of bytes removed. Cost: one stat()
+    /// per file.
     u64 evict();
     /// Removes all files of the cache. Returns the number of bytes removed.
     u64 clear();

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/cache/value_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <xxhash.h>
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+#include <system_error>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
@@ -50,15 +52,22 @@ void write_checked(const std::filesystem::path& file, std::string_view kind, std
 }
 
 std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return std::nullopt;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    const std::string bytes = std::move(text).str();
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0 && errno == ENOENT) return std::nullopt;
+    std::string bytes;
+    std::array<char, 4096> part;
+    ssize_t length = descriptor < 0 ? -1 : 1;
+    while (length > 0) {
+        length = ::read(descriptor, part.data(), part.size());
+        if (length > 0) bytes.append(part.data(), static_cast<std::size_t>(length));
+    }
+    const int reason = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    if (length < 0) throw Error("'{}' cannot be read: {}", file.string(), std::generic_category().message(reason));
     const std::size_t end = bytes.find('\n');
     const std::string content = end == std::string::npos ? std::string() : bytes.substr(end + 1);
-    if (!stream || bytes.substr(0, end + 1) != head_of(file, kind, content))
-        throw Error("'{}' is damaged: its bytes are not those that were written under this name", file.string());
+    if (bytes.substr(0, end + 1) != head_of(file, kind, content))
+        throw DamagedFile("'{}' is damaged: its bytes are not those that were written under this name", file.string());
     return content;
 }
 
@@ -151,7 +160,7 @@ private:
     Buffer<std::byte> stored(const Json& where, std::size_t element) const {
         const auto index = where.at(0).get<std::size_t>();
         if (index >= arrays_.size() || where.at(1) != element || arrays_[index].size() % element != 0)
-            throw Error("an array of the value file is missing, or has another type");
+            throw DamagedFile("an array of the value file is missing, or has another type");
         return arrays_[index];
     }
 
@@ -242,16 +251,19 @@ void EncodedValue::write(const std::filesystem::path& file) const {
     target.commit(AtomicFile::Sync::no);
 }
 
-Value read_value(const std::filesystem::path& file, std::string_view content) try {
-    const auto map = std::make_shared<const MappedFile>(file);
+namespace {
+
+/// The value in the mapped file. Throws Error as read_value() does.
+Value value_in(const std::shared_ptr<const MappedFile>& map, const std::filesystem::path& file,
+               std::string_view content) try {
     const std::string_view bytes = map->bytes();
     Preamble preamble;
     if (bytes.size() < sizeof preamble || !bytes.starts_with(magic))
-        throw Error("'{}' is not a value file", file.string());
+        throw DamagedFile("'{}' is not a value file", file.string());
     std::memcpy(&preamble, bytes.data(), sizeof preamble);
     if (preamble.file_bytes != bytes.size() || preamble.header_bytes > bytes.size() - sizeof preamble)
-        throw Error("'{}' has {} bytes; expected {}", file.string(), bytes.size(), preamble.file_bytes);
-    const Error damaged("'{}' is damaged: its bytes are not those that were written", file.string());
+        throw DamagedFile("'{}' has {} bytes; expected {}", file.string(), bytes.size(), preamble.file_bytes);
+    const DamagedFile damaged("'{}' is damaged: its bytes are not those that were written", file.string());
     const auto require = [&](const char(&expected)[16], std::string_view hashed) {
         if (hash_of(hashed) != std::string_view(expected, sizeof expected)) throw damaged;
     };
@@ -272,18 +284,38 @@ Value read_value(const std::filesystem::path& file, std::string_view content) tr
     }
     require(preamble.arrays_hash, hashes);
     if (const std::string found = preamble.name().content; !content.empty() && found != content)
-        throw Error("'{}' is damaged: it holds the value {}", file.string(), found);
+        throw DamagedFile("'{}' is damaged: it holds the value {}", file.string(), found);
     const auto name = json.at("kind").get<std::string>();
     const std::optional<Kind> kind = kind_named(name);
-    if (!kind) throw Error("'{}' contains a value of the unknown kind {}", file.string(), name);
+    if (!kind) throw DamagedFile("'{}' contains a value of the unknown kind {}", file.string(), name);
     const std::shared_ptr<void> object = kind->info().make();
     FieldReader reader(json, arrays);
     kind->info().visit(reader, object.get());
     return Value(*kind, object);
 } catch (const JsonMismatch&) {
-    throw Error("the header of '{}' is not one that Scanmill writes", file.string());
+    throw DamagedFile("the header of '{}' is not one that Scanmill writes", file.string());
 } catch (const Json::exception&) {
-    throw Error("the header of '{}' is not one that Scanmill writes", file.string());
+    throw DamagedFile("the header of '{}' is not one that Scanmill writes", file.string());
+}
+
+}  // namespace
+
+Value read_value(const std::filesystem::path& file, std::string_view content) {
+    std::error_code unknown;
+    if (std::filesystem::file_size(file, unknown) == 0) throw DamagedFile("'{}' is empty", file.string());
+    std::shared_ptr<const MappedFile> map;
+    try {
+        map = std::make_shared<const MappedFile>(file);
+    } catch (const Error& error) {
+        throw error.reworded(fmt::format("'{}' {}", file.string(), error.sentence()));
+    }
+    try {
+        return value_in(map, file, content);
+    } catch (const DamagedFile&) {
+        throw;
+    } catch (const Error& error) {
+        throw DamagedFile(error);
+    }
 }
 
 namespace {

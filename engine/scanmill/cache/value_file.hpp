@@ -20,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/data/point_stream.hpp"
 #include "scanmill/kinds/value.hpp"
 
@@ -27,12 +28,19 @@ struct XXH3_state_s;
 
 namespace scanmill {
 
+/// Thrown if a file was read, but its bytes are not those that were written.
+class __attribute__((visibility("default"))) DamagedFile : public Error {
+public:
+    using Error::Error;
+    explicit DamagedFile(Error error) : Error(std::move(error)) {}
+};
+
 /// Writes a line with the kind, the file's name and the hash of the content, then the content. The file appears whole
 /// or not at all. It is not synced to the disk. Throws Error if it cannot be written.
 void write_checked(const std::filesystem::path& file, std::string_view kind, std::string_view content);
 
-/// The content that write_checked() wrote; empty if the file does not exist. Throws Error if the file has another kind,
-/// was written under another name, or has changed bytes.
+/// The content that write_checked() wrote; empty if the file does not exist. Throws DamagedFile if the file has another
+/// kind, was written under another name, or has changed bytes, and Error if it cannot be read.
 std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind);
 
 /// Computes the hash of an array that arrives in parts. The array is padded with zeros as in a value file.
@@ -79,8 +87,9 @@ private:
 };
 
 /// Reads the value in the file, and every byte once to check the hashes. The arrays stay mapped while they are in use.
-/// Meanwhile the file may be removed, but not shortened. Throws Error if the file does not exist, is not a value file,
-/// is truncated or has changed bytes. Throws Error if `content` is given and the value has another content.
+/// Meanwhile the file may be removed, but not shortened; on a network file system, only this machine may remove it.
+/// Throws DamagedFile if the file is not a value file, is truncated or has changed bytes, or if `content` is given and
+/// the value has another content. Throws Error if it cannot be read.
 Value read_value(const std::filesystem::path& file, std::string_view content = {});
 
 /// Computes the name that EncodedValue gives to the point cloud in a file, without loading the cloud.

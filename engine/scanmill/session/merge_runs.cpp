@@ -10,7 +10,6 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/output_lock.hpp"
 #include "scanmill/session/shard.hpp"
 #include "scanmill/worker/file_description.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last run that ended in the folder of a shard.
+/// The last run in the folder of a shard.
 struct ShardRun {
     fs::path folder;
     Shard shard;
@@ -32,18 +31,23 @@ std::string name_of_shard(const ShardRun& run) {
     return fmt::format("shard {} in '{}'", run.shard.text(), run.folder.string());
 }
 
+/// Throws Error if the last run in the folder is not one of a shard, or has not ended.
 ShardRun shard_in(const fs::path& folder) {
     const RunRecords records = RunRecords::read(folder / records_file);
-    const RecordedRun which{folder, std::nullopt};
-    RunDetails run = records.run(ended_run(records, which));
+    const std::vector<RunSummary> runs = records.runs();
+    if (runs.empty())
+        throw Error("'{}' has no runs", folder.string()).hint("name the folders into which shards were run");
+    RunDetails run = records.run(runs.back().id);
     if (run.start.shard.empty())
         throw Error("the last run in '{}' is no shard: it has all cells of {}", folder.string(), run.start.workflow)
             .hint("only the folders of shards can be merged");
-    const std::string newest = records.runs().back().outcome.value_or("");
-    if (run.summary.outcome == "interrupted" || newest.empty() || newest == "interrupted")
-        throw Error("shard {} in '{}' is unfinished: its last run was interrupted or killed, or is still running",
-                    run.start.shard, folder.string())
-            .hint("run the shard again; what it computed is in the cache");
+    if (const std::string outcome = run.summary.outcome.value_or("interrupted"); outcome == "interrupted") {
+        const bool is_running = OutputLock::is_held(folder);
+        throw Error("shard {} in '{}' is unfinished: its last run {}", run.start.shard, folder.string(),
+                    is_running ? "has not ended yet" : "was interrupted or killed")
+            .hint(is_running ? "wait until it has ended"
+                             : "run the shard again; its cells that had finished are in the cache");
+    }
     const Shard shard = Shard::parse(run.start.shard);
     return {folder, shard, std::move(run)};
 }
@@ -73,11 +77,25 @@ void require_equal(const ShardRun& first, const ShardRun& other) {
             .hint("run the shards anew");
 }
 
+/// Throws Error if a filter had different modules in two shards. Modules of one version may differ in their build.
+void require_equal_modules(const std::vector<ShardRun>& shards) {
+    std::map<std::string, std::pair<const ShardRun*, const StepRecord*>> first;
+    for (const ShardRun& shard : shards)
+        for (const StepRecord& step : shard.run.steps) {
+            const auto& [other, same] = first.try_emplace(step.filter, &shard, &step).first->second;
+            if (same->filter_version != step.filter_version || same->build != step.build)
+                throw Error("{} and {} cannot be merged: they ran different builds of the filter '{}'",
+                            name_of_shard(*other), name_of_shard(shard), step.filter)
+                    .hint("install the same build on all machines, and run one of the two shards again");
+        }
+}
+
 /// Sorted by number. Throws Error if one is missing or given twice.
 std::vector<ShardRun> shards_in(const std::vector<fs::path>& folders) {
     std::vector<ShardRun> shards;
     for (const fs::path& folder : folders) shards.push_back(shard_in(folder));
     for (const ShardRun& shard : shards) require_equal(shards.front(), shard);
+    require_equal_modules(shards);
     std::ranges::stable_sort(shards, {}, [](const ShardRun& run) { return run.shard.number; });
     for (std::size_t i = 1; i < shards.size(); ++i)
         if (shards[i].shard == shards[i - 1].shard)
@@ -158,11 +176,6 @@ public:
     }
 
 private:
-    /// The file in the target for a file that the shard wrote.
-    fs::path place_of(const ShardRun& shard, const std::string& file) const {
-        return target_ / fs::path(file).lexically_relative(shard.run.start.folder);
-    }
-
     /// Plans the move of every written file, checks its bytes, and sets its path in the record.
     void plan_moves(ShardRun& shard) {
         const auto add = [&](std::string& file, const std::string& sha256) {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/io/atomic_file.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <barrier>
 #include <chrono>
+#include <thread>
+#include <vector>
 
 #include "support/temporary_folder.hpp"
 
@@ -71,28 +77,75 @@ TEST(AtomicFile, WithoutCommit_NothingIsLeft) {
     EXPECT_EQ(folder.files(), 0u);
 }
 
-TEST(AbandonedParts, OfProcessesThatAreGone_AreRemovedAfterAMinute) {
+TEST(AtomicFile, WritersOfEqualBytes_KeepTheFirstFile) {
     const test::TemporaryFolder folder;
-    const pid_t gone = ::fork();
-    if (gone == 0) ::_exit(0);
-    ::waitpid(gone, nullptr, 0);
-    using namespace std::chrono_literals;
-    const auto part = [&](pid_t process, std::chrono::seconds age) {
-        const fs::path file = folder.write(".scanmill-" + std::to_string(process) + "-0.part", "x");
+    constexpr int writers = 6, rounds = 300;
+    std::vector<std::array<ino_t, rounds>> files(writers);
+    std::barrier together(writers);
+    std::vector<std::thread> threads;
+    for (auto& of_writer : files)
+        threads.emplace_back([&] {
+            for (int round = 0; round < rounds; ++round) {
+                const fs::path target = folder / std::to_string(round);
+                AtomicFile file(target);
+                file.write("equal bytes");
+                together.arrive_and_wait();
+                file.commit(AtomicFile::Sync::no);
+                struct stat status;
+                ASSERT_EQ(::stat(target.c_str(), &status), 0);
+                of_writer[static_cast<std::size_t>(round)] = status.st_ino;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& of_writer : files) EXPECT_EQ(of_writer, files[0]) << "others may have mapped the first file";
+    EXPECT_EQ(folder.files(), std::size_t(rounds));
+}
+
+using namespace std::chrono_literals;
+
+class AbandonedParts : public testing::Test {
+protected:
+    /// A temporary file of this age.
+    fs::path part(const std::string& host, pid_t process, std::chrono::seconds age) {
+        const fs::path file = folder_.write(fmt::format(".scanmill-{}-{}-0.part", host, process), "x");
         fs::last_write_time(file, fs::file_time_type::clock::now() - age);
         return file;
-    };
-    const fs::path mine = part(::getpid(), 1h), other = folder.write(".scanmill-notes", "x");
-    fs::last_write_time(other, fs::file_time_type::clock::now() - 1h);
-    const fs::path fresh = part(gone, 0s);
-    remove_abandoned_parts(folder.path());
-    EXPECT_TRUE(fs::exists(fresh)) << "another machine may be writing it";
-    part(gone, 2min);
-    remove_abandoned_parts(folder.path());
+    }
+    static std::string this_host() {
+        std::array<char, 65> name{};
+        ::gethostname(name.data(), name.size() - 1);
+        return name.data();
+    }
+    static pid_t ended_process() {
+        const pid_t gone = ::fork();
+        if (gone == 0) ::_exit(0);
+        ::waitpid(gone, nullptr, 0);
+        return gone;
+    }
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(AbandonedParts, OfThisMachine_AreRemovedAMinuteAfterTheEndOfTheirProcess) {
+    const pid_t gone = ended_process();
+    const fs::path mine = part(this_host(), ::getpid(), 1h), other = folder_.write(".scanmill-notes", "x");
+    fs::last_write_time(other, fs::file_time_type::clock::now() - 48h);
+    const fs::path fresh = part(this_host(), gone, 0s);
+    remove_abandoned_parts(folder_.path());
+    EXPECT_TRUE(fs::exists(fresh)) << "a container of this machine may be writing it";
+    part(this_host(), gone, 2min);
+    remove_abandoned_parts(folder_.path());
     EXPECT_FALSE(fs::exists(fresh));
     EXPECT_TRUE(fs::exists(mine));
     EXPECT_TRUE(fs::exists(other));
-    EXPECT_NO_THROW(remove_abandoned_parts(folder / "not-there"));
+    EXPECT_NO_THROW(remove_abandoned_parts(folder_ / "not-there"));
+}
+
+TEST_F(AbandonedParts, OfOtherMachines_AreRemovedAfterADay) {
+    const pid_t gone = ended_process();
+    const fs::path theirs = part("node-7.cluster", gone, 2h), old = part("node-7.cluster", ::getpid(), 25h);
+    remove_abandoned_parts(folder_.path());
+    EXPECT_TRUE(fs::exists(theirs)) << "their processes cannot be seen, and their clocks may differ";
+    EXPECT_FALSE(fs::exists(old));
 }
 
 }  // namespace
