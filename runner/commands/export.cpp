@@ -79,6 +79,16 @@ std::string job_name(const Plan& plan) {
 /// Files by name.
 using Files = std::vector<std::pair<std::string, std::string>>;
 
+/// How often a chunk runs if the machine runs out of memory or disk; every time with twice the memory.
+constexpr unsigned most_attempts = 3;
+
+/// Shell text that reports a missing program; `node` prints the name of the machine.
+std::string missing_program(const Plan& plan, const std::string& node) {
+    const std::string sentence =
+        fmt::format("cannot run {}; install Scanmill there, or export the batch with --program PATH", plan.program);
+    return fmt::format("[ $code -eq 126 ] || [ $code -eq 127 ] && echo \"error: {} \"{}", node, quoted(sentence));
+}
+
 Files slurm_files(const Plan& plan) {
     const std::string head = fmt::format(
         "#!/bin/sh\n"
@@ -91,35 +101,52 @@ Files slurm_files(const Plan& plan) {
         head + fmt::format(
                    "#SBATCH --array=1-{}\n"
                    "#SBATCH --output=logs/%4a.txt\n"
-                   "# One chunk per job. Exit code 1 means that scans failed, which the report shows.\n"
+                   "# Runs one chunk. Exit code 1: scans failed, which the report shows. {}: memory or disk was full.\n"
                    "cd {} || exit 3\n"
                    "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
+                   "rm -f again/$chunk\n"
                    "{}\n"
                    "code=$?\n"
+                   "{} >&2\n"
+                   "[ $code -eq {} ] && mkdir -p again && : > again/$chunk  # merge.sbatch submits it again\n"
+                   "[ $code -le 1 ] || mkdir -p parts/$chunk  # makes it a failed chunk for --status\n"
                    "[ $code -eq 1 ] && exit 0\n"
                    "exit $code\n",
-                   plan.chunks, quoted(plan.folder.string()),
-                   batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
-    const std::string merge = head + fmt::format(
-                                         "#SBATCH --output=logs/merge.txt\n"
-                                         "# Makes one run of all chunks, and its report.\n"
-                                         "cd {} || exit 3\n"
-                                         "{}\n"
-                                         "code=$?\n"
-                                         "{} || :\n"
-                                         "exit $code\n",
-                                         quoted(plan.folder.string()), merge_command(plan), page_command(plan));
+                   plan.chunks, int(machine_failed), quoted(plan.folder.string()),
+                   batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""),
+                   missing_program(plan, "${SLURMD_NODENAME:-$(uname -n)}"), int(machine_failed));
+    const std::string merge =
+        head + fmt::format(
+                   "#SBATCH --output=logs/merge.txt\n"
+                   "# merge.sbatch [MEGABYTES]: makes one run of all chunks, and its report. Before that, submits the "
+                   "chunks again that ran\n"
+                   "# out of memory or disk, with twice the memory, until they had {} MB.\n"
+                   "cd {} || exit 3\n"
+                   "megabytes=${{1:-{}}}\n"
+                   "again=$(ls again 2>/dev/null | sed 's/^0*//' | paste -sd, -)\n"
+                   "if [ -n \"$again\" ] && [ \"$megabytes\" -lt {} ]; then\n"
+                   "    ./submit.sh \"$again\" $((2 * megabytes)) && exit 0\n"
+                   "fi\n"
+                   "[ -z \"$again\" ] || echo \"error: out of memory or disk in chunks $again; make room, then call: "
+                   "submit.sh $again MEGABYTES\"\n"
+                   "{}\n"
+                   "code=$?\n"
+                   "{} || :\n"
+                   "exit $code\n",
+                   plan.megabytes << (most_attempts - 1), quoted(plan.folder.string()), plan.megabytes,
+                   plan.megabytes << (most_attempts - 1), merge_command(plan), page_command(plan));
     const std::string submit = fmt::format(
         "#!/bin/sh\n"
-        "# submit.sh [CHUNKS]: submits all chunks, or those with these numbers, as 3,17; then the merge, which waits "
-        "for them.\n"
+        "# submit.sh [CHUNKS [MEGABYTES]]: submits all chunks, or those with these numbers, as 3,17; then the merge, "
+        "which waits\n"
+        "# for them.\n"
         "set -e\n"
         "cd {}\n"
         "mkdir -p logs\n"
-        "run=$(sbatch --parsable ${{1:+--array=\"$1\"}} run.sbatch)\n"
-        "merge=$(sbatch --parsable --dependency=afterany:\"${{run%%;*}}\" merge.sbatch)\n"
+        "run=$(sbatch --parsable ${{1:+--array=\"$1\"}} ${{2:+--mem=\"$2M\"}} run.sbatch)\n"
+        "merge=$(sbatch --parsable --dependency=afterany:\"${{run%%;*}}\" merge.sbatch \"${{2:-{}}}\")\n"
         "echo \"chunks are job ${{run%%;*}}, the merge is job ${{merge%%;*}}\"\n",
-        quoted(plan.folder.string()));
+        quoted(plan.folder.string()), plan.megabytes);
     return {{"run.sbatch", run}, {"merge.sbatch", merge}, {"submit.sh", submit}};
 }
 
@@ -144,14 +171,19 @@ Files snakemake_files(const Plan& plan) {
     };
     replace("CHUNK", "{wildcards.chunk}");
     replace("THREADS", "{threads}");
-    // Exit code 1: scans failed; 4: the gate tripped. The report shows both.
-    const std::string code_of_chunk = " > {log} 2>&1; code=$?; [ $code -eq 1 ] && code=0; exit $code";
+    // Exit code 1: scans failed; 4: the gate tripped. The report shows both. A chunk that ran out of memory or disk is
+    // repeated; after the last attempt the report shows its failures.
+    const std::string code_of_chunk = fmt::format(
+        " > {{log}} 2>&1; code=$?; {}; [ $code -le 1 ] || mkdir -p parts/{{wildcards.chunk}}; [ $code -eq 1 ] && "
+        "code=0; "
+        "[ $code -eq {} ] && [ {{resources.attempt}} -eq {} ] && code=0; exit $code",
+        snakemake_shell(missing_program(plan, "$(uname -n)")) + " >> {log}", int(machine_failed), most_attempts);
     const std::string code_of_merge =
         " > {log} 2>&1; code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
     const std::string text = fmt::format(
         "# Runs the batch {0} in {1} chunks, then makes one run of them, and its report.\n"
-        "#   snakemake -j 4\n"
-        "#   snakemake --executor slurm -j 100\n"
+        "#   snakemake -s Snakefile -j 4\n"
+        "#   snakemake -s Snakefile --executor slurm -j 100\n"
         "workdir: {2}\n"
         "CHUNKS = [f\"{{number:04d}}\" for number in range(1, {3} + 1)]\n"
         "localrules: everything, merge, report\n"
@@ -164,8 +196,9 @@ Files snakemake_files(const Plan& plan) {
         "    output: touch(\"done/{{chunk}}\")\n"
         "    log: \"logs/{{chunk}}.txt\"\n"
         "    threads: {4}\n"
-        "    retries: 2\n"
+        "    retries: {10}\n"
         "    resources:\n"
+        "        attempt=lambda wildcards, attempt: attempt,\n"
         "        mem_mb=lambda wildcards, attempt: {5} * 2 ** (attempt - 1),  # out of memory: twice as much\n"
         "        runtime={6}\n"
         "    shell: {7}\n"
@@ -184,7 +217,7 @@ Files snakemake_files(const Plan& plan) {
         plan.name, plan.chunks, python_text(plan.folder.string()), plan.chunks, plan.cores, plan.megabytes,
         plan.minutes, python_text("set +e; " + chunk + code_of_chunk),
         python_text("set +e; " + snakemake_shell(merge_command(plan)) + code_of_merge),
-        python_text("set +e; " + snakemake_shell(page_command(plan)) + " > {log} 2>&1; exit 0"));
+        python_text("set +e; " + snakemake_shell(page_command(plan)) + " > {log} 2>&1; exit 0"), most_attempts - 1);
     return {{"Snakefile", text}};
 }
 
@@ -209,6 +242,9 @@ void require_free(const fs::path& folder) {
         throw Error("'{}' has results of an earlier export", folder.string())
             .hint("choose another folder, or remove this one when its run is merged");
 }
+
+/// The tasks that Slurm takes in an array job unless its configuration raises MaxArraySize.
+constexpr std::size_t most_tasks = 1000;
 
 std::string hours_text(double seconds) { return fmt::format("{:.3g} h", seconds / 3600); }
 
@@ -258,6 +294,12 @@ int export_batch(const Options& options) {
             write(plan.folder / name, text);
         fs::create_directories(plan.folder / "logs", absent);
     }
+    if (options.scheduler == "slurm" && chunks.size() > most_tasks)
+        print_warning(
+            fmt::format("Slurm takes {} tasks in an array unless its MaxArraySize is raised, and the batch has {} "
+                        "chunks; --minutes {:.0f} makes fewer",
+                        most_tasks, chunks.size(),
+                        std::ceil(1.01 * total / (60.0 * options.cores * static_cast<double>(most_tasks)))));
     if (options.json) {
         print_document(json_of(
             ExportDocument{chunks.size(), checked.cells(), total, longest, plan.minutes, plan.megabytes, estimated}));

@@ -267,6 +267,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     session_.on_warning(warn_);
     int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done
                : report.has_fault()                                                       ? our_fault
+               : !task.shard.empty() && report.has_machine_failure()                      ? machine_failed
                                                                                           : some_failed;
     std::optional<Comparison> comparison;
     if (is_batch && !report.interrupted && task.shard.empty()) {  // shards are judged together
