@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Two nodes of Slurm on this machine, in the folder "$folder/slurm", which the script that reads this file sets. Needs root.
-: "${folder:?}"
+# Nodes of Slurm on this machine, in the folder "$folder/slurm", which the script that reads this file sets. Needs root.
+: "${folder:?}" "${nodes:=2}" "${cores_per_node:=2}"
 
 # Prints why Slurm cannot be started here; prints nothing if it can.
 slurm_obstacle() {
@@ -22,13 +22,13 @@ wait_until() {
     done
 }
 
-are_nodes_idle() { [ "$(sinfo -h -t idle -o %D)" = 2 ]; }
+are_nodes_idle() { [ "$(sinfo -h -p main -t idle -o %D)" = "$nodes" ]; }
 
 has_cgroups() { [ -e /sys/fs/cgroup/memory/memory.limit_in_bytes ]; }
 
 # write_slurm_conf ACCOUNTING: `none`, or `slurmdbd`.
 write_slurm_conf() {
-    local host task=task/none track=proctrack/linuxproc
+    local number host task=task/none track=proctrack/linuxproc
     host=$(hostname -s)
     if has_cgroups; then task=task/cgroup track=proctrack/cgroup; fi
     cat >"$folder/slurm/slurm.conf" <<END
@@ -57,9 +57,11 @@ KillWait=5
 SchedulerParameters=sched_interval=1,bf_interval=1,batch_sched_delay=0
 SlurmdParameters=config_overrides
 DefMemPerCPU=200
-NodeName=node[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[26821-26822] CPUs=2 CoresPerSocket=2 RealMemory=4000
-PartitionName=main Nodes=node[1-2] Default=YES State=UP
+NodeName=node[1-$nodes] NodeHostname=$host NodeAddr=127.0.0.1 Port=[26821-$((26820 + nodes))] CPUs=$cores_per_node CoresPerSocket=$cores_per_node RealMemory=4000
+PartitionName=main Nodes=node[1-$nodes] Default=YES State=UP
 END
+    # The partition first2 has the first two nodes.
+    for number in $(seq "$nodes"); do echo "PartitionName=first$number Nodes=node[1-$number] State=UP"; done >>"$folder/slurm/slurm.conf"
     [ "$1" != slurmdbd ] || printf '%s\n' AccountingStorageHost=localhost AccountingStoragePort=26819 >>"$folder/slurm/slurm.conf"
     printf '%s\n' CgroupPlugin=cgroup/v1 CgroupMountpoint=/sys/fs/cgroup CgroupAutomount=no ConstrainRAMSpace=yes ConstrainSwapSpace=no \
         ConstrainCores=no ConstrainDevices=no MinRAMSpace=10 >"$folder/slurm/cgroup.conf"
@@ -75,8 +77,9 @@ start_munge() {
 
 # start_slurm [slurmdbd]
 start_slurm() {
+    local number
     rm -rf "$folder/slurm/state" "$folder/slurm"/node?
-    mkdir -p "$folder/slurm/node1" "$folder/slurm/node2"
+    for number in $(seq "$nodes"); do mkdir -p "$folder/slurm/node$number"; done
     install -d -o slurm "$folder/slurm/state" "$folder/slurm/log"
     write_slurm_conf "${1:-none}"
     # The Snakemake plugin removes SLURM_CONF from the environment of jobs, so the file must be where Slurm looks for it.
@@ -84,8 +87,7 @@ start_slurm() {
     start_munge
     [ -z "${1:-}" ] || start_slurmdbd
     slurmctld
-    slurmd -N node1
-    slurmd -N node2
+    for number in $(seq "$nodes"); do slurmd -N "node$number"; done
     wait_until 30 are_nodes_idle || fail "the nodes do not start: $(sinfo)"
 }
 
@@ -104,7 +106,7 @@ kill_and_wait() {
 
 stop_slurm() {
     [ -d "$folder/slurm" ] || return 0
-    kill_and_wait "$folder"/slurm/slurmd-*.pid "$folder/slurm/slurmctld.pid" "$folder/slurm/slurmdbd.pid" "$folder/slurm/mariadb.pid"
+    kill_and_wait "$folder"/slurm/slurmd-*.pid "$folder/slurm/slurmctld.pid" "$folder/slurm/slurmdbd.pid" "$folder/slurm/database/mariadb.pid"
     [ -z "${has_own_munge:-}" ] || kill_and_wait /run/munge/munged.pid
     [ ! -L /etc/slurm/slurm.conf ] || rm -f /etc/slurm/slurm.conf /etc/slurm/cgroup.conf /etc/slurm/slurmdbd.conf
 }
@@ -115,7 +117,7 @@ start_slurmdbd() {
     mariadb-install-db --no-defaults --datadir="$data" --user=mysql --auth-root-authentication-method=normal --skip-test-db >/dev/null
     install -d -o mysql /run/mysqld
     setsid mariadbd --no-defaults --datadir="$data" --user=mysql --socket=$socket --skip-networking --innodb-buffer-pool-size=64M \
-        --innodb-lock-wait-timeout=900 --pid-file="$folder/slurm/mariadb.pid" >"$folder/slurm/log/mariadb.log" 2>&1 &
+        --innodb-lock-wait-timeout=900 --pid-file="$data/mariadb.pid" >"$folder/slurm/log/mariadb.log" 2>&1 &
     wait_until 30 mariadb-admin --no-defaults --socket=$socket ping || fail "MariaDB does not start"
     mariadb --no-defaults --socket=$socket -e "create database slurm_acct_db; create user slurm@localhost identified by 'test';
         grant all on slurm_acct_db.* to slurm@localhost"

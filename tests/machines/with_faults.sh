@@ -31,11 +31,11 @@ has_status full-disk 'done' 1,2,3,4
 same_result one-library full-disk/result
 passed "slurm, a full disk: the chunk fails three times; with room, the result is that of one run"
 
-export_batch slurm library without-program --program no-scanmill
-without-program/submit.sh 1 >/dev/null
+export_batch slurm library no-program --program no-scanmill
+no-program/submit.sh 1 >/dev/null
 wait_for_jobs
-grep -q '^error: node. cannot run no-scanmill; install' without-program/logs/0001.txt || fail "a missing program: $(cat without-program/logs/0001.txt)"
-has_status without-program failed 1
+grep -q '^error: node. cannot run no-scanmill; install' no-program/logs/0001.txt || fail "a missing program: $(cat no-program/logs/0001.txt)"
+has_status no-program failed 1
 passed "slurm, without the program: one sentence names the node and the way out"
 
 mkdir cache
