@@ -38,10 +38,13 @@ struct Options {
 /// What the scripts need to know.
 struct Plan {
     std::string name;  ///< of the batch
-    fs::path batch, folder, result, cache;  ///< absolute; `cache`: empty for the default
+    std::string batch;  ///< file, as the user named it
+    fs::path directory;  ///< absolute; the jobs work in it, so that they name scans as a run of the user does
+    fs::path folder, result, cache;  ///< absolute; `cache`: empty for the default
     std::string program;
     std::size_t chunks = 0;
     unsigned cores = 1, megabytes = 0, minutes = 0;  ///< of a chunk
+    unsigned merge_megabytes = 0, merge_minutes = 0;
 };
 
 /// In single quotes, for a shell.
@@ -51,14 +54,20 @@ std::string quoted(const std::string& text) {
     return all + "'";
 }
 
+std::string change_directory(const Plan& plan) {
+    return fmt::format("cd {} || exit 3", quoted(plan.directory.string()));
+}
+
 std::string batch_command(const Plan& plan, const std::string& chunk, const std::string& jobs) {
-    return fmt::format("{} batch {} --cells chunks/{}.json -o parts/{} -j {} -q{}", plan.program,
-                       quoted(plan.batch.string()), chunk, chunk, jobs,
+    const std::string folder = quoted(plan.folder.string());
+    return fmt::format("{} batch {} --cells {}/chunks/{}.json -o {}/parts/{} -j {} -q{}", plan.program,
+                       quoted(plan.batch), folder, chunk, folder, chunk, jobs,
                        plan.cache.empty() ? "" : " --cache " + quoted(plan.cache.string()));
 }
 
 std::string merge_command(const Plan& plan) {
-    return fmt::format("{} runs merge parts/* -o {}", plan.program, quoted(plan.result.string()));
+    return fmt::format("{} runs merge {}/parts/* -o {}", plan.program, quoted(plan.folder.string()),
+                       quoted(plan.result.string()));
 }
 
 std::string page_command(const Plan& plan) {
@@ -89,52 +98,59 @@ std::string missing_program(const Plan& plan, const std::string& node) {
     return fmt::format("[ $code -eq 126 ] || [ $code -eq 127 ] && echo \"error: {} \"{}", node, quoted(sentence));
 }
 
-Files slurm_files(const Plan& plan) {
-    const std::string head = fmt::format(
+std::string head_of_job(const Plan& plan, unsigned megabytes, unsigned minutes) {
+    return fmt::format(
         "#!/bin/sh\n"
         "#SBATCH --job-name={}\n"
         "#SBATCH --cpus-per-task={}\n"
         "#SBATCH --mem={}M\n"
         "#SBATCH --time={}\n",
-        job_name(plan), plan.cores, plan.megabytes, time_text(plan.minutes));
+        job_name(plan), plan.cores, megabytes, time_text(minutes));
+}
+
+Files slurm_files(const Plan& plan) {
     const std::string run =
-        head + fmt::format(
-                   "#SBATCH --array=1-{}\n"
-                   "#SBATCH --output=logs/%4a.txt\n"
-                   "# Runs one chunk. Exit code 1: scans failed, which the report shows. {}: memory or disk was full.\n"
-                   "cd {} || exit 3\n"
-                   "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
-                   "rm -f again/$chunk\n"
-                   "{}\n"
-                   "code=$?\n"
-                   "{} >&2\n"
-                   "[ $code -eq {} ] && mkdir -p again && : > again/$chunk  # merge.sbatch submits it again\n"
-                   "[ $code -le 1 ] || mkdir -p parts/$chunk  # makes it a failed chunk for --status\n"
-                   "[ $code -eq 1 ] && exit 0\n"
-                   "exit $code\n",
-                   plan.chunks, int(machine_failed), quoted(plan.folder.string()),
-                   batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""),
-                   missing_program(plan, "${SLURMD_NODENAME:-$(uname -n)}"), int(machine_failed));
+        head_of_job(plan, plan.megabytes, plan.minutes) +
+        fmt::format(
+            "#SBATCH --array=1-{}\n"
+            "#SBATCH --output=logs/%4a.txt\n"
+            "# Runs one chunk. Exit code 1: scans failed, which the report shows. {}: memory or disk was full.\n"
+            "{}\n"
+            "folder={}\n"
+            "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
+            "rm -f \"$folder/again/$chunk\"\n"
+            "{}\n"
+            "code=$?\n"
+            "{} >&2\n"
+            "[ $code -eq {} ] && mkdir -p \"$folder/again\" && : > \"$folder/again/$chunk\"  # for merge.sbatch\n"
+            "[ $code -le 1 ] || mkdir -p \"$folder/parts/$chunk\"  # makes it a failed chunk for --status\n"
+            "[ $code -eq 1 ] && exit 0\n"
+            "exit $code\n",
+            plan.chunks, int(machine_failed), change_directory(plan), quoted(plan.folder.string()),
+            batch_command(plan, "\"$chunk\"", "\"$SLURM_CPUS_PER_TASK\""),
+            missing_program(plan, "${SLURMD_NODENAME:-$(uname -n)}"), int(machine_failed));
     const std::string merge =
-        head + fmt::format(
-                   "#SBATCH --output=logs/merge.txt\n"
-                   "# merge.sbatch [MEGABYTES]: makes one run of all chunks, and its report. Before that, submits the "
-                   "chunks again that ran\n"
-                   "# out of memory or disk, with twice the memory, until they had {} MB.\n"
-                   "cd {} || exit 3\n"
-                   "megabytes=${{1:-{}}}\n"
-                   "again=$(ls again 2>/dev/null | sed 's/^0*//' | paste -sd, -)\n"
-                   "if [ -n \"$again\" ] && [ \"$megabytes\" -lt {} ]; then\n"
-                   "    ./submit.sh \"$again\" $((2 * megabytes)) && exit 0\n"
-                   "fi\n"
-                   "[ -z \"$again\" ] || echo \"error: out of memory or disk in chunks $again; make room, then call: "
-                   "submit.sh $again MEGABYTES\"\n"
-                   "{}\n"
-                   "code=$?\n"
-                   "{} || :\n"
-                   "exit $code\n",
-                   plan.megabytes << (most_attempts - 1), quoted(plan.folder.string()), plan.megabytes,
-                   plan.megabytes << (most_attempts - 1), merge_command(plan), page_command(plan));
+        head_of_job(plan, plan.merge_megabytes, plan.merge_minutes) +
+        fmt::format(
+            "#SBATCH --output=logs/merge.txt\n"
+            "# merge.sbatch [MEGABYTES]: makes one run of all chunks, and its report. Before that, submits the chunks\n"
+            "# again that ran out of memory or disk, with twice the memory, until they had {} MB.\n"
+            "{}\n"
+            "folder={}\n"
+            "megabytes=${{1:-{}}}\n"
+            "again=$(ls \"$folder/again\" 2>/dev/null | sed 's/^0*//' | paste -sd, -)\n"
+            "if [ -n \"$again\" ] && [ \"$megabytes\" -lt {} ]; then\n"
+            "    \"$folder/submit.sh\" \"$again\" $((2 * megabytes)) && exit 0\n"
+            "fi\n"
+            "[ -z \"$again\" ] || echo \"error: out of memory or disk in chunks $again; make room, then call: "
+            "submit.sh "
+            "$again MEGABYTES\"\n"
+            "{}\n"
+            "code=$?\n"
+            "{} || :\n"
+            "exit $code\n",
+            plan.megabytes << (most_attempts - 1), change_directory(plan), quoted(plan.folder.string()), plan.megabytes,
+            plan.megabytes << (most_attempts - 1), merge_command(plan), page_command(plan));
     const std::string submit = fmt::format(
         "#!/bin/sh\n"
         "# submit.sh [CHUNKS [MEGABYTES]]: submits all chunks, or those with these numbers, as 3,17; then the merge, "
@@ -153,33 +169,36 @@ Files slurm_files(const Plan& plan) {
 /// In double quotes, for Python.
 std::string python_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
-/// A command inside shell text of Snakemake, in which braces are for wildcards.
-std::string snakemake_shell(const std::string& command) {
+/// Shell text of Snakemake, in which single braces are for wildcards.
+std::string snakemake_shell(const std::string& text) {
     std::string all;
-    for (const char c : command) {
+    for (const char c : text) {
         if (c == '{' || c == '}') all += c;
         all += c;
     }
     return all;
 }
 
+/// The plan for commands in shell text of Snakemake.
+Plan snakemake_shell(Plan plan) {
+    for (std::string* text : {&plan.batch, &plan.program}) *text = snakemake_shell(*text);
+    for (fs::path* path : {&plan.directory, &plan.folder, &plan.result, &plan.cache})
+        *path = snakemake_shell(path->string());
+    return plan;
+}
+
 Files snakemake_files(const Plan& plan) {
-    std::string chunk = snakemake_shell(batch_command(plan, "CHUNK", "THREADS"));
-    const auto replace = [&](const std::string& from, const std::string& to) {
-        for (std::size_t at = 0; (at = chunk.find(from, at)) != std::string::npos; at += to.size())
-            chunk.replace(at, from.size(), to);
+    const Plan in_shell = snakemake_shell(plan);
+    const auto command = [&](const std::string& text, const std::string& exit) {
+        return python_text(fmt::format("set +e; ({}; {}) > {{log}} 2>&1; {}", change_directory(in_shell), text, exit));
     };
-    replace("CHUNK", "{wildcards.chunk}");
-    replace("THREADS", "{threads}");
     // Exit code 1: scans failed; 4: the gate tripped. The report shows both. A chunk that ran out of memory or disk is
     // repeated; after the last attempt the report shows its failures.
     const std::string code_of_chunk = fmt::format(
-        " > {{log}} 2>&1; code=$?; {}; [ $code -le 1 ] || mkdir -p parts/{{wildcards.chunk}}; [ $code -eq 1 ] && "
-        "code=0; "
+        "code=$?; {} >> {{log}}; [ $code -le 1 ] || mkdir -p parts/{{wildcards.chunk}}; [ $code -eq 1 ] && code=0; "
         "[ $code -eq {} ] && [ {{resources.attempt}} -eq {} ] && code=0; exit $code",
-        snakemake_shell(missing_program(plan, "$(uname -n)")) + " >> {log}", int(machine_failed), most_attempts);
-    const std::string code_of_merge =
-        " > {log} 2>&1; code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
+        missing_program(in_shell, "$(uname -n)"), int(machine_failed), most_attempts);
+    const std::string code_of_merge = "code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
     const std::string text = fmt::format(
         "# Runs the batch {0} in {1} chunks, then makes one run of them, and its report.\n"
         "#   snakemake -s Snakefile -j 4\n"
@@ -215,9 +234,8 @@ Files snakemake_files(const Plan& plan) {
         "    log: \"logs/report.txt\"\n"
         "    shell: {9}\n",
         plan.name, plan.chunks, python_text(plan.folder.string()), plan.chunks, plan.cores, plan.megabytes,
-        plan.minutes, python_text("set +e; " + chunk + code_of_chunk),
-        python_text("set +e; " + snakemake_shell(merge_command(plan)) + code_of_merge),
-        python_text("set +e; " + snakemake_shell(page_command(plan)) + " > {log} 2>&1; exit 0"), most_attempts - 1);
+        plan.minutes, command(batch_command(in_shell, "{wildcards.chunk}", "{threads}"), code_of_chunk),
+        command(merge_command(in_shell), code_of_merge), command(page_command(in_shell), "exit 0"), most_attempts - 1);
     return {{"Snakefile", text}};
 }
 
@@ -246,6 +264,10 @@ void require_free(const fs::path& folder) {
 /// The tasks that Slurm takes in an array job unless its configuration raises MaxArraySize.
 constexpr std::size_t most_tasks = 1000;
 
+/// What bench/scale/simulate.py measured, and some room: every chunk holds the names of all scans, the merge all
+/// records.
+constexpr double megabytes_per_scan = 0.01, megabytes_per_merged_cell = 0.015, merged_cells_per_minute = 30'000;
+
 std::string hours_text(double seconds) { return fmt::format("{:.3g} h", seconds / 3600); }
 
 int export_batch(const Options& options) {
@@ -267,8 +289,9 @@ int export_batch(const Options& options) {
 
     Plan plan;
     plan.name = checked.batch.name;
-    plan.batch = fs::absolute(file);
+    plan.batch = file;
     plan.folder = fs::absolute(options.folder);
+    plan.directory = fs::path(file).is_absolute() ? plan.folder : fs::current_path();
     plan.result = fs::absolute(result);
     if (!options.cache.empty()) plan.cache = fs::absolute(options.cache);
     plan.program = options.program;
@@ -283,7 +306,13 @@ int export_batch(const Options& options) {
     }
     // Room for slower machines, and for the program itself.
     plan.minutes = static_cast<unsigned>(std::ceil(2 * longest / 60)) + 10;
-    plan.megabytes = static_cast<unsigned>(std::ceil(1.5 * static_cast<double>(memory) / 1e6)) * options.cores + 300;
+    const auto program_megabytes =
+        300 + static_cast<unsigned>(megabytes_per_scan * static_cast<double>(checked.batch.scans.size()));
+    plan.megabytes =
+        static_cast<unsigned>(std::ceil(1.5 * static_cast<double>(memory) / 1e6)) * options.cores + program_megabytes;
+    const auto cells = static_cast<double>(checked.cells());
+    plan.merge_megabytes = std::max(plan.megabytes, 300 + static_cast<unsigned>(megabytes_per_merged_cell * cells));
+    plan.merge_minutes = 30 + static_cast<unsigned>(cells / merged_cells_per_minute);
     const auto estimated = static_cast<std::size_t>(std::ranges::count(costs, false, &UnitCost::is_recorded));
 
     if (!options.dry_run) {
@@ -344,7 +373,9 @@ void add_export(CLI::App& app, Action& chosen) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1024));
     command.add_option("--cache", options.cache, "A cache that all machines share. Default: each machine's own");
-    command.add_option("--program", options.program, "The command that starts Scanmill on the machines")
+    command
+        .add_option("--program", options.program,
+                    "The command that starts Scanmill on the machines. The jobs work in the current folder")
         ->capture_default_str();
     command.add_flag("--dry-run", options.dry_run, "Print the expected cost, and write nothing");
     command.add_flag("--json", options.json, "Print the result as JSON");

@@ -2,6 +2,7 @@
 // The commands `run` and `batch`: make a graph from the command line, run it, and print the report.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -461,6 +462,14 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
     return files;
 }
 
+/// The command that runs these chunks of the export in `folder` again.
+std::string repeating_command(const std::filesystem::path& folder, const std::vector<std::string>& chunks) {
+    std::error_code absent;
+    if (const std::filesystem::path submit = folder / "submit.sh"; std::filesystem::exists(submit, absent))
+        return fmt::format("{} {}", shell_word(submit), fmt::join(chunks, ","));
+    return fmt::format("snakemake -s {}", shell_word(folder / "Snakefile"));
+}
+
 /// Prints the states of the chunks in the folder of an export. Returns some_failed if one failed.
 int print_status(const std::filesystem::path& folder, bool json) {
     const std::vector<ChunkStatus> states = chunk_states(folder);
@@ -474,13 +483,17 @@ int print_status(const std::filesystem::path& folder, bool json) {
     if (json) {
         print_document(json_of(BatchStatusDocument{states}));
     } else {
-        for (const auto& [state, numbers] : chunks) {
-            std::string list;
-            for (const std::string& number : numbers) list += (list.empty() ? "" : ",") + number;
-            fmt::print("{:<8} {:>5}  {}\n", name_of(state), numbers.size(), list);
-        }
+        for (const auto& [state, numbers] : chunks)
+            fmt::print("{:<8} {:>5}  {}\n", name_of(state), numbers.size(), fmt::join(numbers, ","));
         fmt::print("{} recorded in {}, of which {} failed\n", count_text(cells, "cell is", "cells are"),
                    count_text(states.size(), "chunk", "chunks"), failed);
+        if (chunks.contains(ChunkState::failed))
+            fmt::print(
+                "a failed chunk was interrupted or killed, or its machine ran out of memory or disk; its cells that "
+                "had "
+                "finished are in the cache\n"
+                "to run the failed chunks again: {}\n",
+                repeating_command(folder, chunks[ChunkState::failed]));
     }
     return chunks.contains(ChunkState::failed) ? some_failed : done;
 }

@@ -49,9 +49,9 @@ TEST_F(ReadyNames, SmoothSurfaceOfRawViews_BeginsWithTheStepsOfRawScans) {
         const std::string out = scanmill({"check", name, "--plan"}).out;
         return out.substr(std::min(out.find("   1. "), out.size()));
     };
-    const std::string mesh = plan("raw-scans"), steps = mesh.substr(0, mesh.find("   9. fill-holes"));
-    EXPECT_THAT(steps, HasSubstr("   8. repair"));
-    EXPECT_THAT(plan("bernardini-1997-raw"), StartsWith(steps));
+    const std::string mesh = plan("raw-scans"), begin = mesh.substr(0, mesh.find("   9. fill-holes"));
+    EXPECT_THAT(begin, HasSubstr("   8. repair"));
+    EXPECT_THAT(plan("bernardini-1997-raw"), StartsWith(begin));
 }
 
 TEST_F(ReadyNames, Nightly_NeedsNoFile) {

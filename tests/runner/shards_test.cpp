@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `batch --shard` and `runs merge`: the merged shards are the run of one machine.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
-
-#include "support/folders.hpp"
-#include "support/program.hpp"
-#include "support/temporary_folder.hpp"
+#include "runner/divided_batch.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -20,82 +10,22 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Shards : public testing::Test {
-protected:
-    Shards() {
-        fs::create_directories(folder_ / "scans");
-        for (int scan = 0; scan < 7; ++scan)
-            folder_.write("scans/s" + std::to_string(scan) + ".xyz",
-                          "0 0 0\n1 0 0\n0 2 0\n1 2 " + std::to_string(scan + 2) + "\n");
-        folder_.write("w.yaml",
-                      "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n"
-                      "  - voxel-thin: {bin-size: {sweep: [0.1 u, 3 u]}}\n    expect: {points: '> 2'}\n"
-                      "outputs: {'{scan}-{variant}.ply': voxel-thin}\n");
-        folder_.write("all.yaml",
-                      "scanmill: 1\nname: all\ninputs: {views: [points]}\nsteps:\n  - merge:\n"
-                      "outputs: {'together.ply': merge}\n");
-        write_batch("points: exact");
-    }
-    void write_batch(const std::string& gate) {
-        folder_.write("b.yaml",
-                      "scanmill: 1\nbatch: b\nscans: [\"scans/*.xyz\"]\nworkflows: [w.yaml, all.yaml]\n"
-                      "gate: {" +
-                          gate + "}\n");
-    }
-    ProgramResult scanmill(const std::vector<std::string>& arguments) {
-        return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
-    }
-    ProgramResult shard(const std::string& text, const std::string& out) {
-        return scanmill({"batch", "b.yaml", "--shard", text, "-o", out, "-q"});
-    }
-    void run_shards(int count) {
-        for (int number = 1; number <= count; ++number)
-            shard(std::to_string(number) + "/" + std::to_string(count), "p" + std::to_string(number));
-    }
-    ProgramResult merge(const std::vector<std::string>& folders, const std::string& out = "whole") {
-        std::vector<std::string> arguments{"runs", "merge"};
-        arguments.insert(arguments.end(), folders.begin(), folders.end());
-        arguments.insert(arguments.end(), {"-o", out});
-        return scanmill(arguments);
-    }
-    /// By name, the bytes of the outputs below the folder.
-    std::map<std::string, std::string> outputs(const std::string& out) {
-        std::map<std::string, std::string> files;
-        for (const auto& entry : fs::recursive_directory_iterator(folder_ / out))
-            if (entry.is_regular_file() && !entry.path().filename().string().starts_with("scanmill."))
-                files[fs::relative(entry.path(), folder_ / out).string()] = content_of(entry.path());
-        return files;
-    }
-    /// What the report says, without clocks, costs and folders.
-    nlohmann::json report(const std::string& out) {
-        nlohmann::json all = nlohmann::json::parse(scanmill({"report", out, "--json"}).out)["report"];
-        nlohmann::json cells = nlohmann::json::array();
-        for (nlohmann::json cell : all["cells"]) {
-            for (const char* member : {"seconds", "costs", "command"}) cell.erase(member);
-            for (auto& reason : cell["reasons"]) reason = "";
-            cells.push_back(cell);
-        }
-        return {{"cells", cells}, {"verdict", all["verdict"]}, {"counts", all["counts"]}, {"rules", all["rules"]}};
-    }
-
-    TemporaryFolder folder_;
-};
+class Shards : public DividedBatch {};
 
 TEST_F(Shards, MergedInAnyOrder_AreTheRunOfOneMachine) {
     scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
     const auto outputs_of_one = outputs("one");
     ASSERT_GE(outputs_of_one.size(), 2u * 8);
-    for (const int count : {1, 3, 8}) {
+    for (const int count : {1, 3, 7, 8}) {
         SCOPED_TRACE(count);
         run_shards(count);
-        std::vector<std::string> folders;
-        for (int number = count; number >= 1; --number) folders.push_back("p" + std::to_string(number));
         const std::string out = "whole" + std::to_string(count);
-        const ProgramResult merged = merge(folders, out);
+        const ProgramResult merged = merge_shuffled("p", count, 3, out);
         EXPECT_EQ(merged.exit_code, 1) << merged.err << "cells with two points fail, as in one run";
         EXPECT_EQ(report(out), report("one"));
-        EXPECT_EQ(outputs(out), outputs_of_one);
-        for (const std::string& folder : folders) {
+        EXPECT_THAT(differences(outputs(out), outputs_of_one), testing::IsEmpty());
+        for (int number = 1; number <= count; ++number) {
+            const std::string folder = "p" + std::to_string(number);
             EXPECT_TRUE(outputs(folder).empty()) << "the outputs were moved";
             fs::remove_all(folder_ / folder);
         }
@@ -168,13 +98,6 @@ TEST_F(Shards, WrongNumbers_AreRefused) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "--shard", "1/2", "--scan", "scans/s1.xyz"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs"}).exit_code, 2);
     EXPECT_EQ(scanmill({"runs", "merge", "p1"}).exit_code, 2) << "-o is missing";
-}
-
-TEST_F(Shards, AKilledShard_IsRunAgain) {
-    run_shards(2);
-    // A run without an end is one that was killed.
-    scanmill({"batch", "b.yaml", "--shard", "2/2", "-o", "p2", "-q", "-j", "1"});
-    EXPECT_EQ(merge({"p1", "p2"}).exit_code, 1);
 }
 
 }  // namespace

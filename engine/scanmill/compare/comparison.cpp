@@ -17,13 +17,8 @@
 
 namespace scanmill {
 
-namespace {
-
 namespace fs = std::filesystem;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// The scan's path relative to the folder of the batch file.
 std::string scan_in_batch(const std::string& scan, const std::string& file) {
     const fs::path folder = fs::path(file).lexically_normal().parent_path(), path = fs::path(scan).lexically_normal();
     if (scan.empty() || folder.empty() || folder == ".") return scan;
@@ -32,6 +27,10 @@ std::string scan_in_batch(const std::string& scan, const std::string& file) {
     const bool leaves = inside.empty() || *inside.begin() == "..";
     return path.is_absolute() && leaves ? scan : inside.empty() ? scan : inside.string();
 }
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 RunFacts facts_of(const RunDetails& run) {
     return {run.summary.id,    run.summary.started, run.summary.outcome.value_or("unfinished"),

@@ -187,6 +187,9 @@ struct Comparison {
     bool tripped() const { return count(Verdict::regressed) + count(Verdict::missing) > 0; }
 };
 
+/// The scan's path relative to the folder of the batch file.
+std::string scan_in_batch(const std::string& scan, const std::string& file);
+
 /// The run with which a run is compared.
 struct Baseline {
     RunDetails run;

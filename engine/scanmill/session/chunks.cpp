@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/compare/comparison.hpp"
 #include "scanmill/io/mapped_file.hpp"
 #include "scanmill/record/json.hpp"
 #include "scanmill/session/output_lock.hpp"
@@ -20,9 +21,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_runs = 20;
 
-/// The units with their workflows and scans as records name them, and the number of cells.
+/// The runs of a unit and the number of its cells.
 struct UnitCells {
-    std::vector<std::pair<std::string, std::string>> runs;  ///< workflow and scan
+    std::vector<std::pair<std::string, std::string>> runs;  ///< workflow and scan, relative to the batch's folder
     std::size_t cells = 0;
     u64 bytes = 0;
 };
@@ -53,7 +54,8 @@ std::vector<UnitCells> cells_of_units(const CheckedBatch& checked) {
         }
         for (const std::size_t scan : part.scans) {
             UnitCells& unit = all[scan];
-            unit.runs.emplace_back(workflow, checked.batch.scans[scan].file.string());
+            unit.runs.emplace_back(workflow,
+                                   scan_in_batch(checked.batch.scans[scan].file.string(), checked.batch.file));
             unit.cells += part.plan->variants.size();
             unit.bytes = size_of(checked.batch.scans[scan]);
         }
@@ -66,8 +68,10 @@ std::map<std::pair<std::string, std::string>, UnitCost> recorded_costs(const Run
     std::map<std::size_t, const StepRecord*> steps;
     for (const StepRecord& step : run.steps) steps[step.node] = &step;
     std::map<std::pair<std::string, std::string>, std::set<std::size_t>> nodes;
-    for (const CellRecord& cell : run.cells)
-        nodes[{cell.workflow, cell.scan}].insert(cell.nodes.begin(), cell.nodes.end());
+    for (const CellRecord& cell : run.cells) {
+        const std::string scan = cell.scan == cell.workflow ? cell.scan : scan_in_batch(cell.scan, run.start.file);
+        nodes[{cell.workflow, scan}].insert(cell.nodes.begin(), cell.nodes.end());
+    }
     std::map<std::pair<std::string, std::string>, UnitCost> costs;
     for (const auto& [names, all] : nodes)
         for (const std::size_t node : all)

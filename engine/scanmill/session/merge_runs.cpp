@@ -10,7 +10,6 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/output_lock.hpp"
 #include "scanmill/session/shard.hpp"
 #include "scanmill/worker/file_description.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last run that ended in the folder of a shard.
+/// The last run in the folder of a shard.
 struct ShardRun {
     fs::path folder;
     Shard shard;
@@ -32,18 +31,23 @@ std::string name_of_shard(const ShardRun& run) {
     return fmt::format("shard {} in '{}'", run.shard.text(), run.folder.string());
 }
 
+/// Throws Error if the last run in the folder is not one of a shard, or has not ended.
 ShardRun shard_in(const fs::path& folder) {
     const RunRecords records = RunRecords::read(folder / records_file);
-    const RecordedRun which{folder, std::nullopt};
-    RunDetails run = records.run(ended_run(records, which));
+    const std::vector<RunSummary> runs = records.runs();
+    if (runs.empty())
+        throw Error("'{}' has no runs", folder.string()).hint("name the folders into which shards were run");
+    RunDetails run = records.run(runs.back().id);
     if (run.start.shard.empty())
         throw Error("the last run in '{}' is no shard: it has all cells of {}", folder.string(), run.start.workflow)
             .hint("only the folders of shards can be merged");
-    const std::string newest = records.runs().back().outcome.value_or("");
-    if (run.summary.outcome == "interrupted" || newest.empty() || newest == "interrupted")
-        throw Error("shard {} in '{}' is unfinished: its last run was interrupted or killed, or is still running",
-                    run.start.shard, folder.string())
-            .hint("run the shard again; what it computed is in the cache");
+    if (const std::string outcome = run.summary.outcome.value_or("interrupted"); outcome == "interrupted") {
+        const bool is_running = OutputLock::is_held(folder);
+        throw Error("shard {} in '{}' is unfinished: its last run {}", run.start.shard, folder.string(),
+                    is_running ? "has not ended yet" : "was interrupted or killed")
+            .hint(is_running ? "wait until it has ended"
+                             : "run the shard again; its cells that had finished are in the cache");
+    }
     const Shard shard = Shard::parse(run.start.shard);
     return {folder, shard, std::move(run)};
 }

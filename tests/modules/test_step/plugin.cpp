@@ -26,6 +26,7 @@ SCANMILL_FILTER() {
                  {"doubt", P::Mode::doubt, "Doubts all outputs."},
                  {"doubt-mesh", P::Mode::doubt_mesh, "Doubts the output `mesh`."},
                  {"slow", P::Mode::slow, "Takes 30 ms."},
+                 {"held", P::Mode::held, "Waits while there is a file that SCANMILL_TEST_HOLD names."},
                  {"crash", P::Mode::crash, "Raises SIGSEGV."},
                  {"kill", P::Mode::kill, "Takes 96 MiB and raises SIGKILL."},
                  {"abort", P::Mode::abort, "Aborts the process."},

@@ -35,6 +35,7 @@ std::string_view name_of(Mode mode) {
         case Mode::doubt: return "doubt";
         case Mode::doubt_mesh: return "doubt-mesh";
         case Mode::slow: return "slow";
+        case Mode::held: return "held";
         case Mode::crash: return "crash";
         case Mode::kill: return "kill";
         case Mode::abort: return "abort";
@@ -84,6 +85,12 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
         case Mode::doubt: context.doubt("was asked to doubt"); break;
         case Mode::doubt_mesh: context.doubt("was asked to doubt the mesh", "mesh"); break;
         case Mode::slow: std::this_thread::sleep_for(std::chrono::milliseconds(30)); break;
+        case Mode::held:
+            while (const char* file = std::getenv("SCANMILL_TEST_HOLD")) {
+                if (std::error_code ignored; !std::filesystem::exists(file, ignored)) break;
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            }
+            break;
         case Mode::crash:
             std::puts("about to crash");
             std::raise(SIGSEGV);  // as a wild pointer would; a sanitizer must not see one

@@ -24,6 +24,7 @@ struct TestStepParams {
         doubt,
         doubt_mesh,
         slow,
+        held,
         crash,
         kill,
         abort,
@@ -56,12 +57,14 @@ struct TestStepResult {
 /// First of all one line, "<mode> <number of points>", is appended to `log`, when one is given. Then, by mode:
 /// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a
 /// mesh without vertices; wait returns only by throwing Cancelled; warn warns once; doubt doubts all outputs,
-/// doubt_mesh the mesh; slow takes 30 ms; undeclared_metric reports `stray`. What follows takes the process along or
-/// leaves something behind in it: crash raises SIGSEGV, kill SIGKILL, abort and exit end the process, throw_number
-/// throws an int, loop never returns, allocate takes memory until there is none, write says 100 lines on standard
-/// output and one on standard error, leak leaves three files open, change_folder leaves the process in the root folder,
-/// babble warns 50,000 times, close_streams closes standard output and error, close_channel the descriptor to the
-/// runner, and loops. Metrics: `points`, the number of points that came out; `length`.
+/// doubt_mesh the mesh; slow takes 30 ms; held
+/// waits while there is a file that the environment variable SCANMILL_TEST_HOLD names; undeclared_metric reports
+/// `stray`. What follows takes the process along or leaves something behind in it: crash raises SIGSEGV, kill SIGKILL,
+/// abort and exit end the process, throw_number throws an int, loop never returns, allocate takes memory until there is
+/// none, write says 100 lines on standard output and one on standard error, leak leaves three files open, change_folder
+/// leaves the process in the root folder, babble warns 50,000 times, close_streams closes standard output and error,
+/// close_channel the descriptor to the runner, and loops. Metrics: `points`, the number of points that came out;
+/// `length`.
 TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
 
 }  // namespace scanmill

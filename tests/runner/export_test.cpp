@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The jobs of `export`, run one after the other by a shell: the merged run is that of one machine.
+
+#include "runner/divided_batch.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <regex>
+
+namespace scanmill::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Export : public DividedBatch {
+protected:
+    /// Exports 15 cells in chunks of one unit, with the arguments added.
+    ProgramResult exported(const std::string& scheduler, const std::string& batch, const std::string& out,
+                           const fs::path& from) {
+        return scanmill_program(
+            {"export", scheduler, batch, "-o", out, "--minutes", "0.0001", "--program", program_file()},
+            {.folder = from, .cache = folder_ / "home"});
+    }
+    int shell(const std::string& commands) {
+        const fs::path script = folder_.write("script.sh", commands);
+        return std::system(fmt::format("env XDG_CACHE_HOME='{}' bash '{}' > '{}' 2>&1", (folder_ / "home").string(),
+                                       script.string(), (folder_ / "shell.txt").string())
+                               .c_str());
+    }
+    std::size_t chunks(const fs::path& folder) {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder / "chunks"), fs::directory_iterator()));
+    }
+    /// Runs the jobs that Slurm would run, the last chunk first.
+    void run_with_slurm(const fs::path& folder) {
+        std::string commands = fmt::format("cd '{}'\nexport SLURM_CPUS_PER_TASK=1\n", folder.string());
+        for (std::size_t chunk = chunks(folder); chunk >= 1; --chunk)
+            commands += fmt::format("SLURM_ARRAY_TASK_ID={} sh run.sbatch || exit\n", chunk);
+        EXPECT_EQ(shell(commands), 0) << content_of(folder_ / "shell.txt");
+        shell(fmt::format("cd '{}'\nsh merge.sbatch\n", folder.string()));
+    }
+    /// Runs the commands of the Snakefile, as Snakemake would.
+    void run_with_snakemake(const fs::path& folder) {
+        const std::string file = content_of(folder / "Snakefile");
+        std::vector<std::string> commands;
+        static const std::regex shell_line("    shell: (\".*\")");
+        for (std::sregex_iterator found(file.begin(), file.end(), shell_line), end; found != end; ++found)
+            commands.push_back(nlohmann::json::parse((*found)[1].str()).get<std::string>());
+        ASSERT_EQ(commands.size(), 3u);
+        const auto run = [&](std::string command, const std::string& chunk) {
+            command = std::regex_replace(command, std::regex("\\{wildcards\\.chunk\\}"), chunk);
+            command = std::regex_replace(command, std::regex("\\{threads\\}"), "1");
+            command = std::regex_replace(command, std::regex("\\{log\\}"), "logs/" + chunk + ".txt");
+            command = std::regex_replace(command, std::regex("\\{\\{"), "{");
+            command = std::regex_replace(command, std::regex("\\}\\}"), "}");
+            EXPECT_EQ(shell(fmt::format("cd '{}'\n{}\n", folder.string(), command)), 0)
+                << command << content_of(folder / "logs" / (chunk + ".txt"));
+        };
+        for (std::size_t chunk = 1; chunk <= chunks(folder); ++chunk) run(commands[0], fmt::format("{:04}", chunk));
+        run(commands[1], "merge");
+        run(commands[2], "report");
+    }
+};
+
+TEST_F(Export, JobsGiveTheOutputsAndDescriptionsOfOneRun_HoweverTheBatchIsNamed) {
+    fs::create_directories(folder_ / "elsewhere");
+    const std::vector<std::pair<std::string, fs::path>> names{
+        {"b.yaml", folder_.path()},
+        {"../b.yaml", folder_ / "elsewhere"},
+        {(folder_ / "b.yaml").string(), folder_ / "elsewhere"},
+    };
+    int number = 0;
+    for (const auto& [name, from] : names) {
+        SCOPED_TRACE(name);
+        const std::string one = fmt::format("one{}", ++number), many = fmt::format("ma{{n}}y CHUNK {}", number);
+        scanmill_program({"batch", name, "-o", (folder_ / one).string(), "-q", "--no-cache"},
+                         {.folder = from, .cache = folder_ / "home"});
+        const auto expected = outputs(one);
+        ASSERT_GE(expected.size(), 2u * 8);
+        EXPECT_THAT(expected.at("s1-bin-size=0.1u.ply.json"), HasSubstr("scans/s1.xyz"));
+        for (const std::string scheduler : {"slurm", "snakemake"}) {
+            SCOPED_TRACE(scheduler);
+            const fs::path folder = folder_ / (many + scheduler);
+            const ProgramResult result = exported(scheduler, name, folder.string(), from);
+            ASSERT_EQ(result.exit_code, 0) << result.err;
+            ASSERT_EQ(chunks(folder), 8u);
+            scheduler == "slurm" ? run_with_slurm(folder) : run_with_snakemake(folder);
+            const std::string whole = many + scheduler + "/result";
+            auto found = outputs(whole);
+            std::erase_if(found, [](const auto& file) {  // of the report
+                return file.first == "report.html" || file.first.starts_with("previews/");
+            });
+            EXPECT_THAT(differences(found, expected), testing::IsEmpty()) << content_of(folder_ / "shell.txt");
+            EXPECT_EQ(report(whole), report(one));
+        }
+    }
+}
+
+TEST_F(Export, RecordedCosts_AreFoundFromAnotherFolder) {
+    scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
+    fs::create_directories(folder_ / "elsewhere");
+    const ProgramResult result = scanmill_program(
+        {"export", "slurm", "../b.yaml", "-o", "cluster", "--records", "../one", "--dry-run", "--json"},
+        {.folder = folder_ / "elsewhere"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["estimated-units"], 0) << result.out;
+}
+
+}  // namespace
+}  // namespace scanmill::test
