@@ -5,7 +5,8 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly paper pictures test test-machines test-report python python-deps test-python deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan \
+.PHONY: help demo nightly paper pictures test test-machines test-report python python-deps test-python deps data bench bench-peers bench-quality \
+	bench-robustness bench-scale fuzz generate format lint release dev asan tsan \
 	wheel deb image test-packages packages-deps
 .DEFAULT_GOAL := help
 
@@ -23,8 +24,10 @@ nightly: release ## compare four surfaces of virtual scans with the accepted run
 	build/release/bin/scanmill report build/nightly
 	-build/release/bin/scanmill report build/nightly --html build/nightly.html
 
-test-machines: dev ## run a batch with Snakemake and with Slurm, where they are installed
-	tests/machines/run.sh build/dev/bin/scanmill
+# Snakemake comes from PyPI; without it, and without Slurm, the parts that need them are skipped.
+test-machines: dev ## run batches with Snakemake and with Slurm, where they are installed; needs root for Slurm
+	PATH="$$(dirname "$$(tools/python_environment.sh tests/machines/requirements.txt build/machines/python)"):$$PATH" \
+		tests/machines/run.sh build/dev/bin/scanmill
 
 test-report: ## test the report page in a headless browser; needs Node and Chromium
 	tests/report/run.sh
@@ -125,6 +128,12 @@ bench-robustness: deps ## measure how much noise and how few points the reconstr
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
 	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
+
+bench-scale: deps ## run 1,000 small scans on simulated nodes of a Slurm, and see what grows with a million; needs root for Slurm
+	cmake --preset bench >/dev/null
+	cmake --build --preset bench -j $(jobs) --target scanmill scanmill-delaunay scanmill-alpha-solid
+	python3 bench/scale/scale.py build/bench/bin/scanmill
+	python3 bench/scale/simulate.py build/bench/bin/scanmill
 
 fuzz: ## fuzz every reader, FUZZ_SECONDS=60 for each, until the first finding
 	tools/deps.sh

@@ -13,8 +13,17 @@
 namespace scanmill::runner {
 
 /// 0: done. 1: some scans failed or an expectation was not met. 2: bad arguments or workflow. 3: internal error. 4: the
-/// gate of a batch tripped, whether or not scans failed. 130: interrupted.
-enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, gate_tripped = 4, interrupted = 130 };
+/// gate of a batch tripped, whether or not scans failed. 5: in a shard or chunk, the machine ran out of memory or disk,
+/// so that another run may succeed. 130: interrupted.
+enum ExitCode {
+    done = 0,
+    some_failed = 1,
+    bad_request = 2,
+    our_fault = 3,
+    gate_tripped = 4,
+    machine_failed = 5,
+    interrupted = 130
+};
 
 /// The action of the command that was chosen on the command line.
 using Action = std::function<int()>;

@@ -44,6 +44,7 @@ struct Plan {
     std::string program;
     std::size_t chunks = 0;
     unsigned cores = 1, megabytes = 0, minutes = 0;  ///< of a chunk
+    unsigned merge_megabytes = 0, merge_minutes = 0;
 };
 
 /// In single quotes, for a shell.
@@ -87,46 +88,81 @@ std::string job_name(const Plan& plan) {
 /// Files by name.
 using Files = std::vector<std::pair<std::string, std::string>>;
 
-Files slurm_files(const Plan& plan) {
-    const std::string head = fmt::format(
+/// How often a chunk runs if the machine runs out of memory or disk; every time with twice the memory.
+constexpr unsigned most_attempts = 3;
+
+/// Shell text that reports a missing program; `node` prints the name of the machine.
+std::string missing_program(const Plan& plan, const std::string& node) {
+    const std::string sentence =
+        fmt::format("cannot run {}; install Scanmill there, or export the batch with --program PATH", plan.program);
+    return fmt::format("[ $code -eq 126 ] || [ $code -eq 127 ] && echo \"error: {} \"{}", node, quoted(sentence));
+}
+
+std::string head_of_job(const Plan& plan, unsigned megabytes, unsigned minutes) {
+    return fmt::format(
         "#!/bin/sh\n"
         "#SBATCH --job-name={}\n"
         "#SBATCH --cpus-per-task={}\n"
         "#SBATCH --mem={}M\n"
         "#SBATCH --time={}\n",
-        job_name(plan), plan.cores, plan.megabytes, time_text(plan.minutes));
+        job_name(plan), plan.cores, megabytes, time_text(minutes));
+}
+
+Files slurm_files(const Plan& plan) {
     const std::string run =
-        head + fmt::format(
-                   "#SBATCH --array=1-{}\n"
-                   "#SBATCH --output=logs/%4a.txt\n"
-                   "# One chunk per job. Exit code 1 means that scans failed, which the report shows.\n"
-                   "{}\n"
-                   "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
-                   "{}\n"
-                   "code=$?\n"
-                   "[ $code -eq 1 ] && exit 0\n"
-                   "exit $code\n",
-                   plan.chunks, change_directory(plan), batch_command(plan, "$chunk", "\"$SLURM_CPUS_PER_TASK\""));
-    const std::string merge = head + fmt::format(
-                                         "#SBATCH --output=logs/merge.txt\n"
-                                         "# Makes one run of all chunks, and its report.\n"
-                                         "{}\n"
-                                         "{}\n"
-                                         "code=$?\n"
-                                         "{} || :\n"
-                                         "exit $code\n",
-                                         change_directory(plan), merge_command(plan), page_command(plan));
+        head_of_job(plan, plan.megabytes, plan.minutes) +
+        fmt::format(
+            "#SBATCH --array=1-{}\n"
+            "#SBATCH --output=logs/%4a.txt\n"
+            "# Runs one chunk. Exit code 1: scans failed, which the report shows. {}: memory or disk was full.\n"
+            "{}\n"
+            "folder={}\n"
+            "chunk=$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\n"
+            "rm -f \"$folder/again/$chunk\"\n"
+            "{}\n"
+            "code=$?\n"
+            "{} >&2\n"
+            "[ $code -eq {} ] && mkdir -p \"$folder/again\" && : > \"$folder/again/$chunk\"  # for merge.sbatch\n"
+            "[ $code -le 1 ] || mkdir -p \"$folder/parts/$chunk\"  # makes it a failed chunk for --status\n"
+            "[ $code -eq 1 ] && exit 0\n"
+            "exit $code\n",
+            plan.chunks, int(machine_failed), change_directory(plan), quoted(plan.folder.string()),
+            batch_command(plan, "\"$chunk\"", "\"$SLURM_CPUS_PER_TASK\""),
+            missing_program(plan, "${SLURMD_NODENAME:-$(uname -n)}"), int(machine_failed));
+    const std::string merge =
+        head_of_job(plan, plan.merge_megabytes, plan.merge_minutes) +
+        fmt::format(
+            "#SBATCH --output=logs/merge.txt\n"
+            "# merge.sbatch [MEGABYTES]: makes one run of all chunks, and its report. Before that, submits the chunks\n"
+            "# again that ran out of memory or disk, with twice the memory, until they had {} MB.\n"
+            "{}\n"
+            "folder={}\n"
+            "megabytes=${{1:-{}}}\n"
+            "again=$(ls \"$folder/again\" 2>/dev/null | sed 's/^0*//' | paste -sd, -)\n"
+            "if [ -n \"$again\" ] && [ \"$megabytes\" -lt {} ]; then\n"
+            "    \"$folder/submit.sh\" \"$again\" $((2 * megabytes)) && exit 0\n"
+            "fi\n"
+            "[ -z \"$again\" ] || echo \"error: out of memory or disk in chunks $again; make room, then call: "
+            "submit.sh "
+            "$again MEGABYTES\"\n"
+            "{}\n"
+            "code=$?\n"
+            "{} || :\n"
+            "exit $code\n",
+            plan.megabytes << (most_attempts - 1), change_directory(plan), quoted(plan.folder.string()), plan.megabytes,
+            plan.megabytes << (most_attempts - 1), merge_command(plan), page_command(plan));
     const std::string submit = fmt::format(
         "#!/bin/sh\n"
-        "# submit.sh [CHUNKS]: submits all chunks, or those with these numbers, as 3,17; then the merge, which waits "
-        "for them.\n"
+        "# submit.sh [CHUNKS [MEGABYTES]]: submits all chunks, or those with these numbers, as 3,17; then the merge, "
+        "which waits\n"
+        "# for them.\n"
         "set -e\n"
         "cd {}\n"
         "mkdir -p logs\n"
-        "run=$(sbatch --parsable ${{1:+--array=\"$1\"}} run.sbatch)\n"
-        "merge=$(sbatch --parsable --dependency=afterany:\"${{run%%;*}}\" merge.sbatch)\n"
+        "run=$(sbatch --parsable ${{1:+--array=\"$1\"}} ${{2:+--mem=\"$2M\"}} run.sbatch)\n"
+        "merge=$(sbatch --parsable --dependency=afterany:\"${{run%%;*}}\" merge.sbatch \"${{2:-{}}}\")\n"
         "echo \"chunks are job ${{run%%;*}}, the merge is job ${{merge%%;*}}\"\n",
-        quoted(plan.folder.string()));
+        quoted(plan.folder.string()), plan.megabytes);
     return {{"run.sbatch", run}, {"merge.sbatch", merge}, {"submit.sh", submit}};
 }
 
@@ -156,13 +192,17 @@ Files snakemake_files(const Plan& plan) {
     const auto command = [&](const std::string& text, const std::string& exit) {
         return python_text(fmt::format("set +e; ({}; {}) > {{log}} 2>&1; {}", change_directory(in_shell), text, exit));
     };
-    // Exit code 1: scans failed; 4: the gate tripped. The report shows both.
-    const std::string code_of_chunk = "code=$?; [ $code -eq 1 ] && code=0; exit $code";
+    // Exit code 1: scans failed; 4: the gate tripped. The report shows both. A chunk that ran out of memory or disk is
+    // repeated; after the last attempt the report shows its failures.
+    const std::string code_of_chunk = fmt::format(
+        "code=$?; {} >> {{log}}; [ $code -le 1 ] || mkdir -p parts/{{wildcards.chunk}}; [ $code -eq 1 ] && code=0; "
+        "[ $code -eq {} ] && [ {{resources.attempt}} -eq {} ] && code=0; exit $code",
+        missing_program(in_shell, "$(uname -n)"), int(machine_failed), most_attempts);
     const std::string code_of_merge = "code=$?; [ $code -eq 1 ] || [ $code -eq 4 ] && code=0; exit $code";
     const std::string text = fmt::format(
         "# Runs the batch {0} in {1} chunks, then makes one run of them, and its report.\n"
-        "#   snakemake -j 4\n"
-        "#   snakemake --executor slurm -j 100\n"
+        "#   snakemake -s Snakefile -j 4\n"
+        "#   snakemake -s Snakefile --executor slurm -j 100\n"
         "workdir: {2}\n"
         "CHUNKS = [f\"{{number:04d}}\" for number in range(1, {3} + 1)]\n"
         "localrules: everything, merge, report\n"
@@ -175,8 +215,9 @@ Files snakemake_files(const Plan& plan) {
         "    output: touch(\"done/{{chunk}}\")\n"
         "    log: \"logs/{{chunk}}.txt\"\n"
         "    threads: {4}\n"
-        "    retries: 2\n"
+        "    retries: {10}\n"
         "    resources:\n"
+        "        attempt=lambda wildcards, attempt: attempt,\n"
         "        mem_mb=lambda wildcards, attempt: {5} * 2 ** (attempt - 1),  # out of memory: twice as much\n"
         "        runtime={6}\n"
         "    shell: {7}\n"
@@ -194,7 +235,7 @@ Files snakemake_files(const Plan& plan) {
         "    shell: {9}\n",
         plan.name, plan.chunks, python_text(plan.folder.string()), plan.chunks, plan.cores, plan.megabytes,
         plan.minutes, command(batch_command(in_shell, "{wildcards.chunk}", "{threads}"), code_of_chunk),
-        command(merge_command(in_shell), code_of_merge), command(page_command(in_shell), "exit 0"));
+        command(merge_command(in_shell), code_of_merge), command(page_command(in_shell), "exit 0"), most_attempts - 1);
     return {{"Snakefile", text}};
 }
 
@@ -219,6 +260,13 @@ void require_free(const fs::path& folder) {
         throw Error("'{}' has results of an earlier export", folder.string())
             .hint("choose another folder, or remove this one when its run is merged");
 }
+
+/// The tasks that Slurm takes in an array job unless its configuration raises MaxArraySize.
+constexpr std::size_t most_tasks = 1000;
+
+/// What bench/scale/simulate.py measured, and some room: every chunk holds the names of all scans, the merge all
+/// records.
+constexpr double megabytes_per_scan = 0.01, megabytes_per_merged_cell = 0.015, merged_cells_per_minute = 30'000;
 
 std::string hours_text(double seconds) { return fmt::format("{:.3g} h", seconds / 3600); }
 
@@ -258,7 +306,13 @@ int export_batch(const Options& options) {
     }
     // Room for slower machines, and for the program itself.
     plan.minutes = static_cast<unsigned>(std::ceil(2 * longest / 60)) + 10;
-    plan.megabytes = static_cast<unsigned>(std::ceil(1.5 * static_cast<double>(memory) / 1e6)) * options.cores + 300;
+    const auto program_megabytes =
+        300 + static_cast<unsigned>(megabytes_per_scan * static_cast<double>(checked.batch.scans.size()));
+    plan.megabytes =
+        static_cast<unsigned>(std::ceil(1.5 * static_cast<double>(memory) / 1e6)) * options.cores + program_megabytes;
+    const auto cells = static_cast<double>(checked.cells());
+    plan.merge_megabytes = std::max(plan.megabytes, 300 + static_cast<unsigned>(megabytes_per_merged_cell * cells));
+    plan.merge_minutes = 30 + static_cast<unsigned>(cells / merged_cells_per_minute);
     const auto estimated = static_cast<std::size_t>(std::ranges::count(costs, false, &UnitCost::is_recorded));
 
     if (!options.dry_run) {
@@ -269,6 +323,12 @@ int export_batch(const Options& options) {
             write(plan.folder / name, text);
         fs::create_directories(plan.folder / "logs", absent);
     }
+    if (options.scheduler == "slurm" && chunks.size() > most_tasks)
+        print_warning(
+            fmt::format("Slurm takes {} tasks in an array unless its MaxArraySize is raised, and the batch has {} "
+                        "chunks; --minutes {:.0f} makes fewer",
+                        most_tasks, chunks.size(),
+                        std::ceil(1.01 * total / (60.0 * options.cores * static_cast<double>(most_tasks)))));
     if (options.json) {
         print_document(json_of(
             ExportDocument{chunks.size(), checked.cells(), total, longest, plan.minutes, plan.megabytes, estimated}));

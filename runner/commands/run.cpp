@@ -2,8 +2,8 @@
 // The commands `run` and `batch`: make a graph from the command line, run it, and print the report.
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <fmt/ranges.h>
+#include <sys/prctl.h>
 
 #include <algorithm>
 #include <charconv>
@@ -289,6 +289,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     session_.on_warning(warn_);
     int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done
                : report.has_fault()                                                       ? our_fault
+               : !task.shard.empty() && report.has_machine_failure()                      ? machine_failed
                                                                                           : some_failed;
     std::optional<Comparison> comparison;
     if (is_batch && !report.interrupted && task.shard.empty()) {  // shards are judged together
@@ -508,7 +509,9 @@ int print_status(const std::filesystem::path& folder, bool json) {
                    count_text(states.size(), "chunk", "chunks"), failed);
         if (chunks.contains(ChunkState::failed))
             fmt::print(
-                "a failed chunk was interrupted or killed; its cells that had finished are in the cache\n"
+                "a failed chunk was interrupted or killed, or its machine ran out of memory or disk; its cells that "
+                "had "
+                "finished are in the cache\n"
                 "to run the failed chunks again: {}\n",
                 repeating_command(folder, chunks[ChunkState::failed]));
     }

@@ -1,21 +1,26 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh PROGRAM: runs an exported batch with Snakemake and with Slurm, and compares its outputs with those of one run. Each part is
-# skipped, with a sentence, where its programs are missing. For Slurm, two nodes are started on this machine, as root.
+# run.sh PROGRAM [PART…]: runs exported batches with Snakemake and with Slurm, and compares every result with that of one run, byte for
+# byte. The parts are snakemake, slurm, faults, plugin and accounting; without names, all run. A part is skipped, with a sentence, where
+# its programs are missing. For Slurm, two nodes are started on this machine, as root.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "$1")
+shift
+parts=" ${*:-snakemake slurm faults plugin accounting} "
 folder=$(mktemp -d)
 chmod 755 "$folder"
-mkdir "$folder/bin"
+mkdir "$folder/bin" "$folder/slurm"
 ln -s "$program" "$folder/bin/scanmill"
 export PATH="$folder/bin:$PATH" HOME="$folder"
 cd "$folder"
 
+# shellcheck source=tests/machines/slurm.sh
+. "$root/tests/machines/slurm.sh"
+
 stop() {
-    for pid in "$folder"/slurm/*.pid; do [ ! -e "$pid" ] || kill "$(cat "$pid")" 2>/dev/null || true; done
-    [ -z "${munge:-}" ] || kill "$munge" 2>/dev/null || true
-    sleep 1
+    stop_slurm
+    { grep -o " $folder/[^ ]*" /proc/mounts || true; } | xargs -r umount
     rm -rf "$folder"
 }
 trap stop EXIT
@@ -25,96 +30,57 @@ fail() {
     exit 1
 }
 
-# The files of the page on many machines, and four scans.
+passed() { echo "$* ($((SECONDS - since)) s)" && since=$SECONDS; }
+since=0
+
+# numbers_of FOLDER: every number of its last run except times and memory.
+numbers_of() { scanmill report "$1" --run "$(scanmill runs "$1" --json | sed -n 's/^ *"id": \([0-9]*\).*/\1/p' | tail -1)" --table csv | cut -d, -f3- | grep -vE ',(seconds|cpu-seconds|memory),'; }
+
+# same_result ONE FOLDER: both have the same meshes and descriptions, byte for byte, and the same numbers.
+same_result() {
+    local file
+    for file in "$1"/*.ply "$1"/*.ply.json; do cmp "$file" "$2/$(basename "$file")" || fail "$2 differs"; done
+    diff <(numbers_of "$1") <(numbers_of "$2") >difference.txt || fail "the numbers of $2 differ: $(head -5 difference.txt)"
+}
+
+# is_status FOLDER STATE CHUNKS: whether these chunks, as 1,3, are all that are in the state.
+is_status() {
+    scanmill batch --status "$1" >status.txt || true  # 1 if a chunk failed
+    grep -q "^$2 .* $3\$" status.txt
+}
+
+has_status() { is_status "$@" || fail "$1: chunks $3 are not $2: $(cat status.txt)"; }
+
+# export_batch SCHEDULER BATCH FOLDER [OPTION…]: one scan per chunk, and an empty cache.
+export_batch() {
+    local cache=(--cache "cache-$3")
+    if [[ " $* " == *" --cache "* ]]; then cache=(); fi
+    scanmill export "$1" "$2.yaml" -o "$3" --records "one-$2" --minutes 0.001 "${cache[@]}" "${@:4}" >export.txt || fail "export: $(cat export.txt)"
+}
+
+# The files of the page on many machines and four scans; a second batch whose last scan takes seconds and 200 MB.
 awk '/^<!-- file: /{name=$3} /^```/{if (open) {open=0; name=""} else if (name) {open=1; next}} open{print > name}' "$root/docs/how-to/many-machines.md"
-mkdir scans
-for size in 60 80 100 120; do
+mkdir scans large
+for size in 60 80 100 120 300; do
     scanmill run scan.yaml --set size="$size u" -o . -q >/dev/null
-    mv scan.ply "scans/$size.ply"
+    mv scan.ply "$([ "$size" = 300 ] && echo large || echo scans)/$size.ply"
 done
-scanmill batch library.yaml -o one -q >/dev/null
+sed 's/^batch: .*/batch: large/; s/^scans: .*/scans: ["scans\/60.ply", "large\/*.ply"]/' library.yaml >large.yaml
+scanmill batch library.yaml -o one-library -q --no-cache >/dev/null
+scanmill batch large.yaml -o one-large -q --no-cache >/dev/null
+passed "two batches in one run"
 
-# same_outputs FOLDER: the meshes are those of the one run, byte for byte.
-same_outputs() {
-    for file in one/*.ply one/*.ply.json; do cmp "$file" "$1/$(basename "$file")" || fail "$1 differs"; done
-    [ "$(scanmill report "$1" | sed -n 2p)" = "8 cells: 8 new" ] || fail "the report of $1 differs"
-}
+has_part() { [[ $parts == *" $1 "* ]]; }
 
-if command -v snakemake >/dev/null; then
-    scanmill export snakemake library.yaml -o with-snakemake --records one --minutes 0.001 >/dev/null
-    snakemake -s with-snakemake/Snakefile -j 2 >snakemake.txt 2>&1 || fail "snakemake: $(tail -5 snakemake.txt)"
-    same_outputs with-snakemake/result
-    [ -s with-snakemake/result/report.html ] || echo "no report page: this program was built without it"
-    echo "snakemake: 8 cells in chunks give the outputs of one run"
-else
-    echo "skipped: the test with Snakemake needs snakemake"
+if has_part snakemake; then . "$root/tests/machines/with_snakemake.sh"; fi
+if has_part slurm || has_part faults || has_part plugin || has_part accounting; then
+    obstacle=$(slurm_obstacle)
+    if [ -n "$obstacle" ]; then
+        echo "skipped: the test with Slurm $obstacle"
+        exit 0
+    fi
 fi
-
-if ! command -v slurmctld >/dev/null || ! command -v slurmd >/dev/null || ! command -v munged >/dev/null || [ "$(id -u)" != 0 ]; then
-    echo "skipped: the test with Slurm needs slurmctld, slurmd and munged, as Debian's slurm-wlm and munge have them, and root"
-    exit 0
-fi
-if [ -e /etc/slurm/slurm.conf ]; then
-    echo "skipped: this machine has a Slurm of its own"
-    exit 0
-fi
-mkdir slurm slurm/node1 slurm/node2
-install -d -o slurm slurm/state slurm/log
-host=$(hostname -s)
-export SLURM_CONF=$folder/slurm/slurm.conf
-cat >"$SLURM_CONF" <<END
-ClusterName=test
-SlurmctldHost=$host(127.0.0.1)
-SlurmctldPort=26817
-SlurmUser=slurm
-SlurmdUser=root
-AuthType=auth/munge
-AuthInfo=cred_expire=5
-StateSaveLocation=$folder/slurm/state
-SlurmdSpoolDir=$folder/slurm/%n
-SlurmctldPidFile=$folder/slurm/slurmctld.pid
-SlurmdPidFile=$folder/slurm/slurmd-%n.pid
-SlurmctldLogFile=$folder/slurm/log/slurmctld.log
-SlurmdLogFile=$folder/slurm/log/slurmd-%n.log
-ProctrackType=proctrack/linuxproc
-TaskPlugin=task/none
-SelectType=select/cons_tres
-SelectTypeParameters=CR_Core_Memory
-AccountingStorageType=accounting_storage/none
-ReturnToService=2
-SchedulerParameters=sched_interval=2,bf_interval=2,batch_sched_delay=0
-SlurmdParameters=config_overrides
-NodeName=node[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[26821-26822] CPUs=2 CoresPerSocket=2 RealMemory=4000
-PartitionName=main Nodes=node[1-2] Default=YES State=UP
-END
-if ! pgrep -x munged >/dev/null; then
-    install -d -o munge -g munge -m 755 /run/munge
-    install -d -o munge -g munge -m 700 /var/log/munge
-    runuser -u munge -- munged
-    munge=$(pgrep -x munged)
-fi
-slurmctld
-slurmd -N node1
-slurmd -N node2
-for _ in $(seq 30); do [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ] && break || sleep 1; done
-
-wait_for_jobs() {
-    for _ in $(seq 120); do
-        [ -n "$(squeue -h)" ] || return 0
-        sleep 1
-    done
-    fail "jobs still run after two minutes: $(squeue)"
-}
-
-scanmill export slurm library.yaml -o with-slurm --records one --minutes 0.001 >/dev/null
-with-slurm/submit.sh 1,3 >/dev/null
-wait_for_jobs
-scanmill batch --status with-slurm >status.txt
-grep -q '^done  *2  1,3$' status.txt || fail "after chunks 1 and 3: $(cat status.txt)"
-grep -q 'shards are missing: 2/4 and 4/4' with-slurm/logs/merge.txt || fail "the merge did not refuse: $(cat with-slurm/logs/merge.txt)"
-with-slurm/submit.sh 2,4 >/dev/null
-wait_for_jobs
-scanmill batch --status with-slurm >status.txt
-grep -q '^done  *4  1,2,3,4$' status.txt || fail "after all chunks: $(cat status.txt)"
-same_outputs with-slurm/result
-echo "slurm: 8 cells in chunks on two nodes give the outputs of one run"
+if has_part slurm || has_part faults || has_part plugin; then start_slurm; fi
+if has_part slurm; then . "$root/tests/machines/with_slurm.sh"; fi
+if has_part faults; then . "$root/tests/machines/with_faults.sh"; fi
+if has_part plugin || has_part accounting; then . "$root/tests/machines/with_plugin.sh"; fi

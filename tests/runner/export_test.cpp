@@ -51,7 +51,7 @@ protected:
         ASSERT_EQ(commands.size(), 3u);
         const auto run = [&](std::string command, const std::string& chunk) {
             command = std::regex_replace(command, std::regex("\\{wildcards\\.chunk\\}"), chunk);
-            command = std::regex_replace(command, std::regex("\\{threads\\}"), "1");
+            command = std::regex_replace(command, std::regex("\\{(threads|resources\\.attempt)\\}"), "1");
             command = std::regex_replace(command, std::regex("\\{log\\}"), "logs/" + chunk + ".txt");
             command = std::regex_replace(command, std::regex("\\{\\{"), "{");
             command = std::regex_replace(command, std::regex("\\}\\}"), "}");
@@ -96,6 +96,55 @@ TEST_F(Export, JobsGiveTheOutputsAndDescriptionsOfOneRun_HoweverTheBatchIsNamed)
             EXPECT_EQ(report(whole), report(one));
         }
     }
+}
+
+TEST_F(Export, ChunkOutOfMemory_FailsAndIsSubmittedAgainWithTwiceTheMemory) {
+    folder_.write("k.yaml",
+                  "scanmill: 1\nname: k\ninputs: {scan: points}\nparameters: {mode: pass}\nsteps:\n"
+                  "  - test-step: {mode: $mode}\noutputs: {'{scan}.ply': test-step.points}\n");
+    folder_.write("killed.yaml",
+                  "scanmill: 1\nbatch: killed\nscans: [scans/s0.xyz, {path: scans/s1.xyz, set: {mode: kill}}]\n"
+                  "workflows: k.yaml\n");
+    ASSERT_EQ(scanmill({"export", "slurm", "killed.yaml", "-o", "cluster", "--minutes", "0.0001", "--program",
+                        program_file()})
+                  .exit_code,
+              0);
+    fs::create_directories(folder_ / "bin");
+    const fs::path calls = folder_ / "calls.txt";
+    fs::permissions(
+        folder_.write("bin/sbatch", fmt::format("#!/bin/sh\necho \"$@\" >> '{}'\necho 7\n", calls.string())),
+        fs::perms::owner_all);
+    const auto job = [&](const std::string& command) {
+        return WEXITSTATUS(shell(fmt::format("cd '{}'\nexport SLURM_CPUS_PER_TASK=1 PATH='{}':$PATH {}\n{}\n",
+                                             (folder_ / "cluster").string(), (folder_ / "bin").string(),
+                                             environment_.front(), command)));
+    };
+    EXPECT_EQ(job("SLURM_ARRAY_TASK_ID=1 sh run.sbatch"), 0);
+    EXPECT_EQ(job("SLURM_ARRAY_TASK_ID=2 sh run.sbatch"), 5) << content_of(folder_ / "shell.txt");
+    const nlohmann::json chunks =
+        nlohmann::json::parse(scanmill({"batch", "--status", "cluster", "--json"}).out)["chunks"];
+    EXPECT_EQ(chunks[0]["state"], "done");
+    EXPECT_EQ(chunks[1]["state"], "failed");
+
+    EXPECT_EQ(job("sh merge.sbatch 400"), 0) << content_of(folder_ / "shell.txt");
+    EXPECT_THAT(content_of(calls), HasSubstr("--array=2 --mem=800M run.sbatch"));
+    EXPECT_THAT(content_of(calls), HasSubstr("merge.sbatch 800"));
+    EXPECT_FALSE(fs::exists(folder_ / "cluster/result"));
+
+    EXPECT_EQ(job("sh merge.sbatch 1000000"), 1) << "after the last attempt, the report shows the failure";
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("out of memory or disk in chunks 2;"));
+    EXPECT_TRUE(fs::exists(folder_ / "cluster/result/s0.ply"));
+}
+
+TEST_F(Export, MissingProgram_GivesOneSentenceAndAFailedChunk) {
+    ASSERT_EQ(scanmill({"export", "slurm", "b.yaml", "-o", "cluster", "--program", "no-scanmill"}).exit_code, 0);
+    EXPECT_NE(
+        shell(fmt::format("cd '{}'\nSLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=1 SLURMD_NODENAME=n4 sh run.sbatch\n",
+                          (folder_ / "cluster").string())),
+        0);
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("error: n4 cannot run no-scanmill; install"));
+    EXPECT_EQ(nlohmann::json::parse(scanmill({"batch", "--status", "cluster", "--json"}).out)["chunks"][0]["state"],
+              "failed");
 }
 
 TEST_F(Export, RecordedCosts_AreFoundFromAnotherFolder) {

@@ -162,6 +162,12 @@ fs::path file_of_chunk(const fs::path& folder, std::size_t number) {
     return folder / fmt::format("chunks/{:04}.json", number);
 }
 
+static bool has_machine_failure(const RunRecords& records, const RunSummary& run) {
+    return run.failed > 0 && std::ranges::any_of(records.run(run.id).cells, [](const CellRecord& cell) {
+               return is_of_machine(cell.failure.cause, cell.failure.number);
+           });
+}
+
 static ChunkStatus status_of(const fs::path& folder, std::size_t number) {
     ChunkStatus status;
     status.chunk = number;
@@ -171,16 +177,18 @@ static ChunkStatus status_of(const fs::path& folder, std::size_t number) {
         status.state = ChunkState::running;
         return status;
     }
-    if (!fs::exists(part / records_file, ignored)) return status;
+    if (!fs::exists(part, ignored)) return status;
+    status.state = ChunkState::failed;
+    if (!fs::exists(part / records_file, ignored)) return status;  // the job ended before it recorded a run
     try {
-        const std::vector<RunSummary> runs = RunRecords::read(part / records_file).runs();
+        const RunRecords records = RunRecords::read(part / records_file);
+        const std::vector<RunSummary> runs = records.runs();
         if (runs.empty()) return status;
-        const bool has_ended = runs.back().outcome && *runs.back().outcome != "interrupted";
-        status.state = has_ended ? ChunkState::done : ChunkState::failed;
         status.cells = runs.back().cells;
         status.failed_cells = runs.back().failed;
-    } catch (const Error&) {
-        status.state = ChunkState::failed;
+        const bool has_ended = runs.back().outcome && *runs.back().outcome != "interrupted";
+        if (has_ended && !has_machine_failure(records, runs.back())) status.state = ChunkState::done;
+    } catch (const Error&) {  // the records cannot be read
     }
     return status;
 }

@@ -55,8 +55,8 @@ std::vector<Chunk> chunks_of(const CheckedBatch& batch, const std::vector<UnitCo
 std::filesystem::path part_of_chunk(const std::filesystem::path& folder, std::size_t number);
 std::filesystem::path file_of_chunk(const std::filesystem::path& folder, std::size_t number);
 
-/// `failed`: the last run was interrupted or killed, or its records cannot be read. A chunk of which scans failed is
-/// done.
+/// `failed`: the last run was interrupted or killed, the machine ran out of memory or disk, or the folder has no
+/// records that can be read. A chunk of which scans failed for other reasons is done.
 enum class ChunkState { waiting, running, done, failed };
 constexpr std::array<std::string_view, 4> names_of(const ChunkState*) {
     return {"waiting", "running", "done", "failed"};

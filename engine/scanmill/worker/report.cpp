@@ -2,6 +2,7 @@
 #include "scanmill/worker/report.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <set>
 
 namespace scanmill {
@@ -44,6 +45,15 @@ Outcome RunReport::outcome() const {
     Outcome worst = Outcome::ok;
     for (const CellReport& cell : cells) worst = std::max(worst, std::min(cell.outcome, Outcome::failed));
     return worst;
+}
+
+bool is_of_machine(Cause cause, int number) {
+    return cause == Cause::output || (cause == Cause::signal && number == SIGKILL);
+}
+
+bool RunReport::has_machine_failure() const {
+    return std::ranges::any_of(
+        cells, [](const CellReport& cell) { return is_of_machine(cell.failure.cause, cell.failure.number); });
 }
 
 bool RunReport::has_fault() const {

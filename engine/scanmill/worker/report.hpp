@@ -50,6 +50,10 @@ constexpr std::array<std::string_view, 10> names_of(const Cause*) {
     return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output", "fault"};
 }
 
+/// Whether another run of the same work may succeed on a machine with more memory or disk: the system killed the worker
+/// process, as it does when memory runs out, or a file could not be written. `number`: of the signal.
+bool is_of_machine(Cause cause, int number);
+
 struct Failure {
     Cause cause = Cause::none;
     int number = 0;  ///< number of the signal, or the exit code
@@ -92,8 +96,8 @@ struct NodeReport {
     Effort effort;
     unsigned attempts = 0;
     ParameterSet resolved;  ///< parameters as the filter got them: lengths in the scan's unit
-    Metrics metrics;        ///< the filter's metrics, in declared order
-    Metrics properties;     ///< properties of the primary output or the file read; empty unless requested
+    Metrics metrics;  ///< the filter's metrics, in declared order
+    Metrics properties;  ///< properties of the primary output or the file read; empty unless requested
     std::vector<std::string> warnings;
     std::vector<Doubt> doubts;
 };
@@ -113,11 +117,11 @@ struct OutputReport {
     Metrics properties;
     std::vector<std::string> warnings;
     std::vector<std::string> doubts;  ///< doubts about the file because it holds less than the value
-    std::string sha256;               ///< hash of the file's bytes; empty: not written
-    u64 bytes = 0;                    ///< size of the file
-    std::filesystem::path moved_to;   ///< new path of the file of an earlier run; empty: not moved
-    std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: no such error
-    std::filesystem::path evidence;   ///< failed_of() the file, if it was written there; otherwise empty
+    std::string sha256;  ///< hash of the file's bytes; empty: not written
+    u64 bytes = 0;  ///< size of the file
+    std::filesystem::path moved_to;  ///< new path of the file of an earlier run; empty: not moved
+    std::string not_moved;  ///< why the file of an earlier run could not be moved; empty: no such error
+    std::filesystem::path evidence;  ///< failed_of() the file, if it was written there; otherwise empty
 };
 constexpr auto fields(const OutputReport*) {
     using R = OutputReport;
@@ -129,7 +133,7 @@ constexpr auto fields(const OutputReport*) {
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
-    Failure failure;     ///< failure of the first failed node, or else of the first failed output
+    Failure failure;  ///< failure of the first failed node, or else of the first failed output
     std::optional<std::size_t> failed_node;  ///< index into RunGraph::nodes of the node with this failure
     double seconds = 0;  ///< sum over the cell's nodes and outputs; shared nodes count in every cell
     std::vector<OutputReport> outputs;
@@ -145,6 +149,8 @@ struct RunReport {
     Outcome outcome() const;
     /// Whether an error of the program (Cause::fault) made a cell fail.
     bool has_fault() const;
+    /// Whether is_of_machine() holds for the failure of a cell.
+    bool has_machine_failure() const;
 };
 
 /// The expectations that the nodes of these cells do not meet, each with the label of its step.

@@ -1,0 +1,18 @@
+# shellcheck shell=bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Snakemake on this machine; run.sh reads this file.
+
+if ! command -v snakemake >/dev/null; then
+    echo "skipped: the test with Snakemake needs snakemake"
+    return
+fi
+export_batch snakemake library with-snakemake
+snakemake -s with-snakemake/Snakefile -j 2 >snakemake.txt 2>&1 || fail "snakemake: $(tail -5 snakemake.txt)"
+same_result one-library with-snakemake/result
+[ -s with-snakemake/result/report.html ] || echo "no report page: this program was built without it"
+passed "snakemake: 8 cells in chunks give the results of one run"
+
+export_batch snakemake library without-program --program no-scanmill
+snakemake -s without-program/Snakefile -j 2 --retries 0 >snakemake.txt 2>&1 && fail "a missing program is not noticed"
+grep -q 'cannot run no-scanmill; install' without-program/logs/0001.txt || fail "a missing program: $(cat without-program/logs/0001.txt)"
+passed "snakemake, without the program: one sentence names the way out"
