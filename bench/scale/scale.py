@@ -144,8 +144,8 @@ def spread(values, digits=1):
 
 def table(cases, results):
     """One row per case: median, least and most over the rounds."""
-    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s |"
-    yield "|---|---|---|---|---|---|---|---|"
+    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s | undisturbed |"
+    yield "|---|---|---|---|---|---|---|---|---|"
     for case in cases:
         rounds = results[case.name]
         nodes = case.nodes or case.jobs
@@ -156,7 +156,8 @@ def table(cases, results):
                f"{statistics.median(m.cells / m.seconds for m in rounds):.0f} | {'–' if only_result else spread(engine)} | "
                f"{spread(scheduler, 2) if case.nodes and not only_result else '–'} | "
                f"{spread([m.merge for m in rounds], 2) if case.nodes else '–'} | "
-               f"{spread([m.report for m in rounds], 2) if case.nodes else '–'} |")
+               f"{spread([m.report for m in rounds], 2) if case.nodes else '–'} | "
+               f"{100 * statistics.median(m.step_cpu / m.step_seconds for m in rounds):.0f} % |")
 
 
 def efficiencies(results):
@@ -170,7 +171,7 @@ def efficiencies(results):
     loss = {
         "slower steps, as the nodes share caches, memory and disk of this machine":
             [(both.step_seconds - 2 * half.step_seconds) / (2 * both.seconds) for half, both in pairs],
-        "slower engine, for the same reasons":
+        "slower work of the engine outside of steps (start, files, records), for the same reasons":
             [((both.program - both.step_seconds) - 2 * (half.program - half.step_seconds)) / (2 * both.seconds) for half, both in pairs],
         "uneven ends: a node waits for the last chunk": [both.last_ends / (2 * both.seconds) for _, both in pairs],
         "the scheduler": [((2 * both.seconds - both.last_ends - both.program) - 2 * (half.seconds - half.program)) / (2 * both.seconds)
@@ -227,7 +228,8 @@ def main():
             "Median, with least and most.", "",
             *table(cases, results), "",
             "*engine*: time of the program outside of steps. *scheduler*: time of a node without a chunk, per chunk, without the wait for the "
-            "last one. Four nodes share two cores, so only their result counts.", ""]
+            "last one. *undisturbed*: CPU time of the steps as a share of their time; less means that other processes took the cores. Four nodes "
+            "share two cores, so only their result counts.", ""]
     if not obstacle:
         text += [*efficiencies(results), ""]
     bad = {name: len(files) for name, files in wrong.items() if files}
