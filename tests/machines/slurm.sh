@@ -108,7 +108,8 @@ stop_slurm() {
     [ -d "$folder/slurm" ] || return 0
     kill_and_wait "$folder"/slurm/slurmd-*.pid "$folder/slurm/slurmctld.pid" "$folder/slurm/slurmdbd.pid" "$folder/slurm/database/mariadb.pid"
     [ -z "${has_own_munge:-}" ] || kill_and_wait /run/munge/munged.pid
-    [ ! -L /etc/slurm/slurm.conf ] || rm -f /etc/slurm/slurm.conf /etc/slurm/cgroup.conf /etc/slurm/slurmdbd.conf
+    # The links may be those of another test on this machine.
+    [ "$(readlink /etc/slurm/slurm.conf)" != "$folder/slurm/slurm.conf" ] || rm -f /etc/slurm/slurm.conf /etc/slurm/cgroup.conf /etc/slurm/slurmdbd.conf
 }
 
 # Starts MariaDB and slurmdbd, which record the jobs for `sacct`.
