@@ -26,7 +26,7 @@ nightly: release ## compare four surfaces of virtual scans with the accepted run
 
 # Snakemake comes from PyPI; without it, and without Slurm, the parts that need them are skipped.
 test-machines: dev ## run batches with Snakemake and with Slurm, where they are installed; needs root for Slurm
-	PATH="$$(dirname "$$(tools/python_environment.sh tests/machines/requirements.txt build/machines/python)"):$$PATH" \
+	PATH="$(CURDIR)/$$(dirname "$$(tools/python_environment.sh tests/machines/requirements.txt build/machines/python)"):$$PATH" \
 		tests/machines/run.sh build/dev/bin/scanmill
 
 test-report: ## test the report page in a headless browser; needs Node and Chromium

@@ -124,8 +124,10 @@ class Filter:
 
 
 def entry(name: str, form: str, text: str) -> list[str]:
-    head = f"{name} : {form}" if name else form
-    return [head, *(line for part in text.split("\n") for line in textwrap.wrap(part, 84, initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False))]
+    lines = [f"{name} : {form}" if name else form]
+    for part in text.split("\n"):
+        lines += textwrap.wrap(part, 84, initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False)
+    return lines
 
 
 def class_name(kind: str) -> str:

@@ -354,8 +354,9 @@ class Mesh(_Positions):
     ):
         rows = _shared(positions, "positions", np.float64, (None, 3), copy)
         faces = _shared(triangles, "triangles", np.uint32, (None, 3), copy)
-        edges = np.zeros((0, 2), np.uint32) if sharp_edges is None else np.unique(np.sort(_shared(sharp_edges, "sharp_edges", np.uint32, (None, 2), copy)), axis=0)
-        edges = _shared(edges, "sharp_edges", np.uint32, (None, 2), True)
+        given = np.zeros((0, 2), np.uint32) if sharp_edges is None else sharp_edges
+        sorted_edges = np.unique(np.sort(_shared(given, "sharp_edges", np.uint32, (None, 2), True)), axis=0)
+        edges = _shared(sorted_edges, "sharp_edges", np.uint32, (None, 2), False)
         self._hold(
             _native.mesh(
                 rows,

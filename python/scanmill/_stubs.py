@@ -12,8 +12,24 @@ from pathlib import Path
 from . import _NAMES
 from ._filters import _CALL, Filter, class_name, filters
 
-_TYPES = {"boolean": "bool", "integer": "int", "number": "float", "length": "str | float", "angle": "str", "ratio": "str | float", "text": "str", "path": "str | os.PathLike[str]"}
-_CALL_TYPES = {"progress": "Callable[[float], None] | bool | None", "seed": "int", "threads": "int", "isolated": "bool", "memory_limit": "int", "time_limit": "float"}
+_TYPES = {
+    "boolean": "bool",
+    "integer": "int",
+    "number": "float",
+    "length": "str | float",
+    "angle": "str",
+    "ratio": "str | float",
+    "text": "str",
+    "path": "str | os.PathLike[str]",
+}
+_CALL_TYPES = {
+    "progress": "Callable[[float], None] | bool | None",
+    "seed": "int",
+    "threads": "int",
+    "isolated": "bool",
+    "memory_limit": "int",
+    "time_limit": "float",
+}
 
 _HEAD = '''\
 # Written by python -m scanmill._stubs.

@@ -147,6 +147,24 @@ TEST_F(Export, MissingProgram_GivesOneSentenceAndAFailedChunk) {
               "failed");
 }
 
+/// The chunk is checked before a scan is opened.
+TEST_F(Export, NodeWithoutAModule_NamesTheFilterAndTheChunkIsFailed) {
+    folder_.write(
+        "step.yaml",
+        "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs:\n  \"{scan}.ply\": test-step\n");
+    folder_.write("step-batch.yaml", "scanmill: 1\nbatch: step\nscans: [\"scans/*\"]\nworkflows: [step.yaml]\n");
+    const ProgramResult exported =
+        scanmill_program({"export", "slurm", "step-batch.yaml", "-o", "cluster", "--program", program_file()},
+                         {.folder = folder_.path(), .environment = {"SCANMILL_PLUGIN_PATH=" + test_plugin_folder()}});
+    ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    EXPECT_NE(shell(fmt::format("cd '{}'\nSLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=1 sh run.sbatch\n",
+                                (folder_ / "cluster").string())),
+              0);
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("there is no filter 'test-step'"));
+    EXPECT_EQ(nlohmann::json::parse(scanmill({"batch", "--status", "cluster", "--json"}).out)["chunks"][0]["state"],
+              "failed");
+}
+
 TEST_F(Export, RecordedCosts_AreFoundFromAnotherFolder) {
     scanmill({"batch", "b.yaml", "-o", "one", "-q", "--no-cache"});
     fs::create_directories(folder_ / "elsewhere");
