@@ -87,7 +87,7 @@ class Filter:
             text = spec["help"] if spec["type"] == "boolean" else f"{spec['help']} Takes {spec['expects']}."
             for choice in spec.get("choices", []):
                 text += f"\n{choice['name']}: {choice['help']}" if choice.get("help") else ""
-            parts += entry(name, form, self._with_python_names(text))
+            parts += entry(name, form, self._with_python_names(text, of_parameter=True))
         for name, (default, form, text) in _CALL.items():
             parts += entry(name, f"{form}, default {default!r}", text)
         first, *others = declared["outputs"]
@@ -114,10 +114,13 @@ class Filter:
         parts += textwrap.wrap("A length is a text such as '0.2 mm', or a number in the scan's own unit.", 88)
         return "\n".join(parts)
 
-    def _with_python_names(self, text: str) -> str:
-        """Parameters with hyphens get the names that the function has for them. Metrics and columns keep theirs."""
+    def _with_python_names(self, text: str, of_parameter: bool = False) -> str:
+        """Parameters with hyphens get the names that the function has for them. Metrics and columns keep theirs. If both have
+        a name, a quoted one in the help of a parameter is that of the parameter."""
         own = {metric["name"] for metric in self.declaration["metrics"]} | set(self.declaration.get("adds", []))
         for name, spec in self.parameters.items():
+            if of_parameter:
+                text = text.replace(f"`{spec['name']}`", f"`{name}`")
             if "-" in spec["name"] and spec["name"] not in own:
                 text = re.sub(rf"(?<![\w-]){re.escape(spec['name'])}(?![\w-])", name, text)
         return text
