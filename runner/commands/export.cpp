@@ -147,7 +147,7 @@ Files slurm_files(const Plan& plan) {
             "$again MEGABYTES\"\n"
             "{}\n"
             "code=$?\n"
-            "{} || :\n"
+            "case $code in 0 | 1 | 4) {} || : ;; esac  # nothing was merged otherwise\n"
             "exit $code\n",
             plan.megabytes << (most_attempts - 1), change_directory(plan), quoted(plan.folder.string()), plan.megabytes,
             plan.megabytes << (most_attempts - 1), merge_command(plan), page_command(plan));

@@ -487,7 +487,11 @@ std::string repeating_command(const std::filesystem::path& folder, const std::ve
     std::error_code absent;
     if (const std::filesystem::path submit = folder / "submit.sh"; std::filesystem::exists(submit, absent))
         return fmt::format("{} {}", shell_word(submit), fmt::join(chunks, ","));
-    return fmt::format("snakemake -s {}", shell_word(folder / "Snakefile"));
+    // Snakemake goes by these marks; a chunk that failed at its last attempt has one, too.
+    std::string marks;
+    for (const std::string& chunk : chunks) marks += " " + shell_word(folder / fmt::format("done/{:0>4}", chunk));
+    for (const char* rule : {"done/merge", "done/report"}) marks += " " + shell_word(folder / rule);
+    return fmt::format("rm -f{}; snakemake -s {} -j 4", marks, shell_word(folder / "Snakefile"));
 }
 
 /// Prints the states of the chunks in the folder of an export. Returns some_failed if one failed.

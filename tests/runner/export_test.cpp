@@ -147,6 +147,14 @@ TEST_F(Export, MissingProgram_GivesOneSentenceAndAFailedChunk) {
               "failed");
 }
 
+/// Snakemake goes by its marks, which a chunk has after its last attempt, too.
+TEST_F(Export, StatusOfSnakemake_PrintsACommandThatRemovesTheMarksOfFailedChunks) {
+    ASSERT_EQ(exported("snakemake", "b.yaml", "sf", folder_.path()).exit_code, 0);
+    fs::create_directories(folder_ / "sf/parts/0002");
+    EXPECT_THAT(scanmill({"batch", "--status", "sf"}).out,
+                HasSubstr("rm -f sf/done/0002 sf/done/merge sf/done/report; snakemake -s sf/Snakefile -j 4\n"));
+}
+
 /// The chunk is checked before a scan is opened.
 TEST_F(Export, NodeWithoutAModule_NamesTheFilterAndTheChunkIsFailed) {
     folder_.write(
