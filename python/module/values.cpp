@@ -79,7 +79,7 @@ nb::dict arrays_of(const T& object) {
     return arrays;
 }
 
-/// Fields that are no arrays.
+/// Adds the fields other than arrays.
 void add_lists(const Value& value, nb::dict& arrays) {
     if (const FeatureGraph* graph = value.find<FeatureGraph>()) {
         nb::list lines;

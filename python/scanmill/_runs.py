@@ -185,9 +185,7 @@ def run(
         words += ["--set", f"{name}={_text(value)}"]
     for option, value in (("--unit", unit), ("--invalid", invalid), ("--until", until)):
         words += [option, value] if value else []
-    for option, values in (("--only", only), ("--save", save)):
-        for value in [values] if isinstance(values, str) else values:
-            words += [option, value]
+    words += _repeated(("--only", only), ("--save", save))
     words += ["--picture"] if picture else []
     words += ["--events", *_common(output, jobs, threads, seed, cache, strict)]
     return _execute(words, text, output, check, progress, on_event)
@@ -216,10 +214,7 @@ def batch(
     see Run.ok and Run.verdict. The other parameters are those of run().
     """
     name, text = _workflow(file, "batch")
-    words = ["batch", name]
-    for option, values in (("--scan", scans), ("--workflow", workflows), ("--only", only)):
-        for value in [values] if isinstance(values, (str, os.PathLike)) else values:
-            words += [option, os.fspath(value)]
+    words = ["batch", name, *_repeated(("--scan", scans), ("--workflow", workflows), ("--only", only))]
     words += ["--json", *_common(output, jobs, threads, seed, cache, strict)]
     return _execute(words, text, output, check, progress, on_event)
 
@@ -229,6 +224,15 @@ def _common(output: Any, jobs: int | None, threads: int, seed: int, cache: Any, 
     words += ["-j", str(jobs)] if jobs is not None else []
     words += ["--no-cache"] if cache is False else [] if cache is True else ["--cache", os.fspath(cache)]
     return words + (["--strict"] if strict else [])
+
+
+def _repeated(*options: tuple[str, Any]) -> list[str]:
+    """The words of options that may be given several times: one value, or some."""
+    words = []
+    for option, values in options:
+        for value in [values] if isinstance(values, (str, os.PathLike)) else values:
+            words += [option, os.fspath(value)]
+    return words
 
 
 def _workflow(given: Any, noun: str) -> tuple[str, str | None]:

@@ -45,7 +45,7 @@ struct ExecuteOptions {
     CacheOptions cache;
     std::uint64_t seed = 0;
     bool no_cache = false, strict = false, dry_run = false, json = false, has_events = false, quiet = false,
-         is_wide = false, ends_with_parent = false;
+         is_wide = false, stops_with_parent = false;
     std::filesystem::path html;  ///< batches only
 };
 
@@ -78,8 +78,7 @@ void on_interrupt(int signal) {
 }
 
 /// A signal stops the run in an orderly way. A signal that is ignored, such as SIGHUP under nohup, stays ignored.
-void handle_interrupts(bool ends_with_parent) {
-    if (ends_with_parent) ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+void handle_interrupts() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
@@ -165,7 +164,7 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, then stop");
     command.add_flag("-q,--quiet", options.quiet, "Print no progress on stderr");
-    command.add_flag("--stop-with-parent", options.ends_with_parent,
+    command.add_flag("--stop-with-parent", options.stops_with_parent,
                      "Stop as after Ctrl-C when the program ends that started this one");
     command.add_flag("--wide", options.is_wide,
                      "Print every headline metric of every step and every file, however wide the table gets");
@@ -209,7 +208,9 @@ public:
     explicit Execution(const ExecuteOptions& options)
         : options_(options),
           cache_(cache_for(options, warn_)),
-          session_(settings_for(options), cache_.get()) {}
+          session_(settings_for(options), cache_.get()) {
+        if (options.stops_with_parent) ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends at once while no step runs yet
+    }
 
     FilterLibrary& library() { return library_; }
     std::string hash(const std::filesystem::path& file) const {
@@ -272,7 +273,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     }
 
     std::signal(SIGPIPE, SIG_IGN);  // a closed stdout does not end the run
-    handle_interrupts(options_.ends_with_parent);
+    handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
     Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.gate.repeats);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
@@ -513,9 +514,8 @@ int print_status(const std::filesystem::path& folder, bool json) {
                    count_text(states.size(), "chunk", "chunks"), failed);
         if (chunks.contains(ChunkState::failed))
             fmt::print(
-                "a failed chunk was interrupted or killed, or its machine ran out of memory or disk; its cells that "
-                "had "
-                "finished are in the cache\n"
+                "a failed chunk was interrupted or killed, or its machine ran out of memory or disk; its cells "
+                "that had finished are in the cache\n"
                 "to run the failed chunks again: {}\n",
                 repeating_command(folder, chunks[ChunkState::failed]));
     }

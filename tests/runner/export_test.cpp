@@ -89,7 +89,7 @@ TEST_F(Export, JobsGiveTheOutputsAndDescriptionsOfOneRun_HoweverTheBatchIsNamed)
             scheduler == "slurm" ? run_with_slurm(folder) : run_with_snakemake(folder);
             const std::string whole = many + scheduler + "/result";
             auto found = outputs(whole);
-            std::erase_if(found, [](const auto& file) {  // of the report
+            std::erase_if(found, [](const auto& file) {  // leaves out what the report adds
                 return file.first == "report.html" || file.first.starts_with("previews/");
             });
             EXPECT_THAT(differences(found, expected), testing::IsEmpty()) << content_of(folder_ / "shell.txt");
@@ -168,7 +168,7 @@ TEST_F(Export, NodeWithoutAModule_NamesTheFilterAndTheChunkIsFailed) {
     EXPECT_NE(shell(fmt::format("cd '{}'\nSLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=1 sh run.sbatch\n",
                                 (folder_ / "cluster").string())),
               0);
-    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("there is no filter 'test-step'"));
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("filter 'test-step'; `scanmill list`"));
     EXPECT_EQ(nlohmann::json::parse(scanmill({"batch", "--status", "cluster", "--json"}).out)["chunks"][0]["state"],
               "failed");
 }
