@@ -44,8 +44,8 @@ struct Threads {
     std::atomic<bool> is_interpreter_ending = false;
 
     void start(const std::shared_ptr<Shared>& shared);
-    /// Waits until the work's thread has ended, unless another caller does. Cancels the work first if `cancels`.
-    void finish(const Shared* shared, bool cancels);
+    /// Waits until the work's thread has ended, unless another caller does.
+    void finish(const Shared* shared);
 };
 
 /// Never destroyed, because threads may outlive everything else.
@@ -71,13 +71,12 @@ void Threads::start(const std::shared_ptr<Shared>& shared) {
     running.emplace(shared.get(), std::pair(shared, std::thread(perform, shared)));
 }
 
-void Threads::finish(const Shared* shared, bool cancels) {
+void Threads::finish(const Shared* shared) {
     std::thread thread;
     {
         const std::scoped_lock lock(mutex);
         const auto found = running.find(shared);
         if (found == running.end()) return;
-        if (cancels) found->second.first->is_cancelled = true;
         thread = std::move(found->second.second);
         running.erase(found);
     }
@@ -111,7 +110,7 @@ void stop_all() {
             if (!threads().running.empty()) first = threads().running.begin()->first;
         }
         if (!first) return;
-        threads().finish(first, true);
+        threads().finish(first);
     }
 }
 
@@ -129,7 +128,7 @@ void run_beside(std::function<void(Beside&)> work, nb::handle on_progress) {
                                                         [&] { return shared->has_ended; });
             lock.unlock();
             stay_out_of_ending_interpreter();
-            if (is_over) threads().finish(shared.get(), false);
+            if (is_over) threads().finish(shared.get());
             if (is_over || interrupt) break;
             const nb::gil_scoped_acquire locked;
             try {

@@ -10,12 +10,10 @@
 
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <tuple>
 
 #include "beside.hpp"
 #include "module.hpp"
-#include "scanmill/plugin/format_modules.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "scanmill/record/json.hpp"
 #include "scanmill/session/session.hpp"
