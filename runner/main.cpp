@@ -98,9 +98,6 @@ int main(int argc, char** argv) {
         }
         print(described, json);
         return bad_request;
-    } catch (const scanmill::FolderInUse& error) {
-        print(error, json);
-        return some_failed;
     } catch (const scanmill::Error& error) {
         print(error, json);
         return bad_request;

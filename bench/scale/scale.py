@@ -45,6 +45,7 @@ class Measured:
     chunks: int = 0
     merge: float = 0
     report: float = 0
+    page: float = 0
 
 
 def run(command, **more):
@@ -72,34 +73,34 @@ class Bench:
 
     def prepare(self, case):
         """An empty folder, which is also the home of an empty cache."""
-        place = self.folder / case.name.replace(" ", "-")
-        shutil.rmtree(place, ignore_errors=True)
-        place.mkdir()
-        return place, {**self.environment, "XDG_CACHE_HOME": str(place / "cache"), "TIMES": str(place / "times.txt")}
+        case_folder = self.folder / case.name.replace(" ", "-")
+        shutil.rmtree(case_folder, ignore_errors=True)
+        case_folder.mkdir()
+        return case_folder, {**self.environment, "XDG_CACHE_HOME": str(case_folder / "cache"), "TIMES": str(case_folder / "times.txt")}
 
     def measure(self, case):
         return self.on_nodes(case) if case.nodes else self.on_machine(case)
 
     def on_machine(self, case):
-        place, environment = self.prepare(case)
+        case_folder, environment = self.prepare(case)
         begin = time.monotonic()
-        run(["taskset", "-c", f"0-{case.jobs - 1}", "scanmill", "batch", self.folder / f"{case.batch}.yaml", "-o", place / "result", "-j",
+        run(["taskset", "-c", f"0-{case.jobs - 1}", "scanmill", "batch", self.folder / f"{case.batch}.yaml", "-o", case_folder / "result", "-j",
              str(case.jobs), "-q"], env=environment)
-        return Measured(time.monotonic() - begin, *recorded(place / "result"))
+        return Measured(time.monotonic() - begin, *recorded(case_folder / "result"))
 
     def on_nodes(self, case):
-        place, environment = self.prepare(case)
+        case_folder, environment = self.prepare(case)
         # Without records a cell is estimated at one second. All cases have chunks of one size: weak scaling needs equal work per node.
-        run(["scanmill", "export", "slurm", self.folder / f"{case.batch}.yaml", "-o", place / "cluster", "--minutes",
+        run(["scanmill", "export", "slurm", self.folder / f"{case.batch}.yaml", "-o", case_folder / "cluster", "--minutes",
              str(2 * self.scans_per_chunk / 60), "--program", HERE / "on_core.sh"], env=environment)
-        chunks = len(list((place / "cluster/chunks").iterdir()))
+        chunks = len(list((case_folder / "cluster/chunks").iterdir()))
         begin, clock = time.monotonic(), time.time()
-        run(["sbatch", "run.sbatch"], cwd=place / "cluster", env={**environment, "SBATCH_PARTITION": f"first{case.nodes}"})
-        times = place / "times.txt"
+        run(["sbatch", "run.sbatch"], cwd=case_folder / "cluster", env={**environment, "SBATCH_PARTITION": f"first{case.nodes}"})
+        times = case_folder / "times.txt"
         while not times.exists() or times.read_text().count("\n") < chunks:
             time.sleep(0.05)
             if time.monotonic() - begin > 600:
-                raise SystemExit(f"error: {case.name}: no end after ten minutes; {place}/cluster/logs")
+                raise SystemExit(f"error: {case.name}: no end after ten minutes; {case_folder}/cluster/logs")
         rows = [(node, float(first), float(last)) for node, first, last in map(str.split, times.read_text().splitlines())]
         ends = {}
         for node, _, last in rows:
@@ -107,12 +108,15 @@ class Bench:
         measured = Measured(max(ends.values()) - clock, 0, 0, 0, sum(last - first for _, first, last in rows),
                             sum(max(ends.values()) - end for end in ends.values()), chunks)
         begin = time.monotonic()
-        run(["scanmill", "runs", "merge", *sorted((place / "cluster/parts").iterdir()), "-o", place / "result"], env=environment)
+        run(["scanmill", "runs", "merge", *sorted((case_folder / "cluster/parts").iterdir()), "-o", case_folder / "result"], env=environment)
         measured.merge = time.monotonic() - begin
         begin = time.monotonic()
-        run(["scanmill", "report", place / "result"], env=environment)
+        run(["scanmill", "report", case_folder / "result"], env=environment)
         measured.report = time.monotonic() - begin
-        measured.step_seconds, measured.step_cpu, measured.cells = recorded(place / "result")
+        begin = time.monotonic()
+        run(["scanmill", "report", case_folder / "result", "--html", case_folder / "page.html"], env=environment)
+        measured.page = time.monotonic() - begin
+        measured.step_seconds, measured.step_cpu, measured.cells = recorded(case_folder / "result")
         while run(["squeue", "-h"]).strip():
             time.sleep(0.1)
         return measured
@@ -143,8 +147,8 @@ def spread(values, digits=1):
 
 def table(cases, results):
     """One row per case: median, least and most over the rounds."""
-    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s | undisturbed |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s | page, s | undisturbed |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
     for case in cases:
         rounds = results[case.name]
         nodes = case.nodes or case.jobs
@@ -156,6 +160,7 @@ def table(cases, results):
                f"{spread(scheduler, 2) if case.nodes and not only_result else '–'} | "
                f"{spread([m.merge for m in rounds], 2) if case.nodes else '–'} | "
                f"{spread([m.report for m in rounds], 2) if case.nodes else '–'} | "
+               f"{spread([m.page for m in rounds]) if case.nodes else '–'} | "
                f"{100 * statistics.median(m.step_cpu / m.step_seconds for m in rounds):.0f} % |")
 
 
@@ -188,7 +193,7 @@ def efficiencies(results):
     work = statistics.median(both.program / both.cells for _, both in pairs)
     yield (f"Merge and the report in text run on one machine and take {1000 * serial:.2f} ms per cell, a chunk {1000 * work:.1f} ms. With cells as small "
            f"as these, they take as long as the chunks on {work / serial:.0f} nodes of one core; with cells of a minute, on {60 / serial:,.0f}. "
-           "The report page takes longer and is not measured here: see million.md.")
+           f"The report page takes {statistics.median(both.page for _, both in pairs):.0f} s more, most of it for the pictures of at most 1,000 cells.")
 
 
 def main():

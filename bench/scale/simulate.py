@@ -73,29 +73,29 @@ class Chunks:
 def measure(program, folder, scans, template, environment, with_page):
     """One row of the table: a batch of so many scans."""
     row = {"scans": scans, "cells": 2 * scans}
-    place = folder / f"of-{scans}"
+    batch_folder = folder / f"of-{scans}"
     # Export and one chunk read the names of all scans.
-    batch = place / "all.yaml"
-    (place / "all").mkdir(parents=True)
+    batch = batch_folder / "all.yaml"
+    (batch_folder / "all").mkdir(parents=True)
     source = sorted((folder / "chunk").iterdir())
     for number in range(scans):
-        os.link(source[number % len(source)], place / "all" / f"{number:07}.ply")
-    shutil.copy(folder / "mesh.yaml", place)
+        os.link(source[number % len(source)], batch_folder / "all" / f"{number:07}.ply")
+    shutil.copy(folder / "mesh.yaml", batch_folder)
     batch.write_text((folder / "chunk.yaml").read_text().replace("chunk", "all"))
-    row["export"], row["export memory"] = timed([program, "export", "slurm", batch, "-o", place / "cluster", "--minutes",
+    row["export"], row["export memory"] = timed([program, "export", "slurm", batch, "-o", batch_folder / "cluster", "--minutes",
                                                  str(2 * SCANS_PER_CHUNK / 60)], env=environment)
     # The second time, every step is in the cache: what remains is the start, the names of all scans, and the records.
-    timed([program, "batch", batch, "--cells", place / "cluster/chunks/0001.json", "-o", place / "first", "-q"], env=environment)
-    row["start"], row["start memory"] = timed([program, "batch", batch, "--cells", place / "cluster/chunks/0001.json", "-o", place / "first", "-q"], env=environment)
-    Chunks(template).write(place / "parts", scans // SCANS_PER_CHUNK)
-    parts = sorted((place / "parts").iterdir())
-    row["merge"], row["merge memory"] = timed([program, "runs", "merge", *parts, "-o", place / "result"], env=environment)
-    row["records"] = (place / "result/scanmill.sqlite").stat().st_size
-    row["report"], row["report memory"] = timed([program, "report", place / "result"], env=environment)
+    timed([program, "batch", batch, "--cells", batch_folder / "cluster/chunks/0001.json", "-o", batch_folder / "first", "-q"], env=environment)
+    row["start"], row["start memory"] = timed([program, "batch", batch, "--cells", batch_folder / "cluster/chunks/0001.json", "-o", batch_folder / "first", "-q"], env=environment)
+    Chunks(template).write(batch_folder / "parts", scans // SCANS_PER_CHUNK)
+    parts = sorted((batch_folder / "parts").iterdir())
+    row["merge"], row["merge memory"] = timed([program, "runs", "merge", *parts, "-o", batch_folder / "result"], env=environment)
+    row["records"] = (batch_folder / "result/scanmill.sqlite").stat().st_size
+    row["report"], row["report memory"] = timed([program, "report", batch_folder / "result"], env=environment)
     if with_page:
-        row["page"], row["page memory"] = timed([program, "report", place / "result", "--html", place / "page.html"], env=environment)
-        row["page size"] = (place / "page.html").stat().st_size
-    shutil.rmtree(place)
+        row["page"], row["page memory"] = timed([program, "report", batch_folder / "result", "--html", batch_folder / "page.html"], env=environment)
+        row["page size"] = (batch_folder / "page.html").stat().st_size
+    shutil.rmtree(batch_folder)
     return row
 
 
@@ -119,14 +119,14 @@ def bytes_text(value):
 
 
 COLUMNS = [("export", seconds_text), ("export memory", bytes_text), ("start", seconds_text), ("start memory", bytes_text), ("merge", seconds_text), ("merge memory", bytes_text),
-           ("records", bytes_text), ("report", seconds_text), ("report memory", bytes_text), ("page", seconds_text), ("page size", bytes_text)]
+           ("records", bytes_text), ("report", seconds_text), ("report memory", bytes_text), ("page", seconds_text), ("page memory", bytes_text), ("page size", bytes_text)]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=lambda name: pathlib.Path(name).resolve())
     parser.add_argument("--scans", default="500,5000,50000", help="rows of the table, multiples of 100")
-    parser.add_argument("--page", type=int, default=500, help="the most scans for which the report page is made")
+    parser.add_argument("--page", type=int, default=50000, help="the most scans for which the report page is made")
     parser.add_argument("--goal", type=int, default=1_000_000, help="scans")
     parser.add_argument("--into", type=pathlib.Path, default=HERE)
     arguments = parser.parse_args()

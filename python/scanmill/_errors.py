@@ -19,6 +19,8 @@ _REMEDIES = (
     "in Python: unit='mm' for the truth",
     "scanmill.apply_transform moves data to another frame",
     "scanmill.sculpt and scanmill.region_grow mesh points",
+    "",
+    "",
 )
 
 

@@ -21,6 +21,7 @@ export interface ReportData {
     /// Every name that a value of a cell has, and `seconds`, `cpu-seconds`, `memory`.
     metrics: MetricInfo[];
     rules: RuleSummary[];
+    /// All cells, or in a large run those with the worst verdicts; `counts` counts all.
     cells: Cell[];
     /// Sorted by effect, size and confidence.
     changes: Change[];

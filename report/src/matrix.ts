@@ -136,7 +136,7 @@ export function matrix(report: Report): Matrix {
 
     function entry(row: Row, column: number): HTMLElement {
         const cell = row.cells[column];
-        if (!cell) return element("td", { class: "empty" }, spoken("not in this batch"));
+        if (!cell) return element("td", { class: "empty" }, spoken("no cell on this page"));
         const reading = report.reading(cell, metric);
         const share = reading && reading.value !== null ? heat.share(row, reading) : null;
         const known = cell.verdict === "doubtful" && cell.known !== null;

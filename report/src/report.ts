@@ -12,7 +12,7 @@ export interface Column {
     title: string;
 }
 
-/// A scan with one cell per column; undefined where the batch has none.
+/// A scan with one cell per column; undefined where the page has none.
 export interface Row {
     scan: string;
     cells: (Cell | undefined)[];

@@ -38,7 +38,7 @@ export function sentence(data: ReportData): string {
 }
 
 function verdictSentence(data: ReportData): string {
-    const cells = data.cells.length;
+    const cells = verdicts.reduce((sum, verdict) => sum + (data.counts[verdict] ?? 0), 0);
     if (cells === 0) return "The run has no cells.";
     const number = data.counts[data.verdict] ?? 0;
     const some = cells === 1 ? "The cell" : `${count(number)} of ${count(cells)} cells`;

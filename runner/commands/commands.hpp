@@ -12,9 +12,9 @@
 
 namespace scanmill::runner {
 
-/// 0: done. 1: some scans failed or an expectation was not met. 2: bad arguments or workflow. 3: internal error. 4: the
-/// gate of a batch tripped, whether or not scans failed. 5: in a shard or chunk, the machine ran out of memory or disk,
-/// so that another run may succeed. 130: interrupted.
+/// 0: done. 1: some scans failed or an expectation was not met. 2: bad arguments or workflow, or a folder in use. 3:
+/// internal error. 4: the gate of a batch tripped, whether or not scans failed. 5: in a shard or chunk, the machine ran
+/// out of memory or disk, or the run is not recorded to its end, so that another run may succeed. 130: interrupted.
 enum ExitCode {
     done = 0,
     some_failed = 1,

@@ -226,6 +226,8 @@ private:
     /// of a gate.
     std::optional<Comparison> judge(const SessionTask& task, std::int64_t run, int& code) const;
     void record_verdict(const Comparison& comparison) const;
+    /// Whether the run is recorded to its end. Records on a full disk are incomplete; shards cannot be merged then.
+    bool is_end_recorded(std::int64_t run) const;
 
     const ExecuteOptions& options_;
     Warn warn_ = warning_printer();
@@ -247,6 +249,15 @@ std::optional<Comparison> Execution::judge(const SessionTask& task, std::int64_t
         print(error, false);
         code = std::max<int>(code, some_failed);
         return std::nullopt;
+    }
+}
+
+bool Execution::is_end_recorded(std::int64_t run) const {
+    if (run == 0) return false;
+    try {
+        return RunRecords::read(options_.session.output_folder / records_file).summary(run).outcome.has_value();
+    } catch (const Error&) {
+        return false;
     }
 }
 
@@ -289,9 +300,9 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     progress.finish();
     session_.on_warning(warn_);
     int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done
-               : report.has_fault()                                                       ? our_fault
-               : !task.shard.empty() && report.has_machine_failure()                      ? machine_failed
+               : report.has_fault() && task.shard.empty()                                 ? our_fault
                                                                                           : some_failed;
+    if (!task.shard.empty() && (report.has_machine_failure() || !is_end_recorded(number))) code = machine_failed;
     std::optional<Comparison> comparison;
     if (is_batch && !report.interrupted && task.shard.empty()) {  // shards are judged together
         // Known doubts do not count, so the comparison decides whether a doubtful result is an error.

@@ -237,7 +237,7 @@ struct Options {
 /// Prints the verdict of the gate on a merged run, records it, and returns the exit code.
 int judge(const std::filesystem::path& folder, std::int64_t run, bool prints) {
     const RunSummary summary = RunRecords::read(folder / records_file).summary(run);
-    int code = summary.failed > 0 ? some_failed : done;
+    const int code = summary.failed > 0 ? some_failed : done;
     const std::optional<Comparison> comparison = verdict_of_batch(folder, run, reproducing_command);
     if (!comparison) return code;
     if (!comparison->gate.rules.empty())

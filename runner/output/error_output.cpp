@@ -41,6 +41,8 @@ Error with_option(const Error& error) {
             case Remedy::declare_truth_unit: return "with scanmill measure: --truth-unit mm";
             case Remedy::move_to_frame: return "the filter apply-transform moves data to another frame";
             case Remedy::mesh_points: return "the filters sculpt and region-grow mesh points";
+            case Remedy::use_other_disk: return "";
+            case Remedy::add_memory: return "";
         }
         return "";
     }();

@@ -26,9 +26,12 @@ namespace {
 void require_replaceable(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return;
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(stream), {});
-    if (!std::filesystem::is_regular_file(file, ignored) || !is_page(text))
+    std::string text;
+    if (std::filesystem::is_regular_file(file, ignored)) {
+        std::ifstream stream(file, std::ios::binary);
+        text.assign(std::istreambuf_iterator<char>(stream), {});
+    }
+    if (!is_page(text))
         throw Error("'{}' exists and is not a page of this program", file.string())
             .hint("choose another name for the page");
 }

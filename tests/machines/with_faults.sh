@@ -25,7 +25,7 @@ grep -q 'out of memory or disk in chunks 2; make room' full-disk/logs/merge.txt 
 has_status full-disk 'done' 1,3,4
 has_status full-disk failed 2
 mount -o remount,size=100m full-disk/parts/0002
-full-disk/submit.sh 2 >/dev/null
+full-disk/submit.sh 2 600 >/dev/null
 wait_for_jobs
 has_status full-disk 'done' 1,2,3,4
 same_result one-library full-disk/result

@@ -16,3 +16,10 @@ export_batch snakemake library without-program --program no-scanmill
 snakemake -s without-program/Snakefile -j 2 --retries 0 >snakemake.txt 2>&1 && fail "a missing program is not noticed"
 grep -q 'cannot run no-scanmill; install' without-program/logs/0001.txt || fail "a missing program: $(cat without-program/logs/0001.txt)"
 passed "snakemake, without the program: one sentence names the way out"
+
+ln -s scanmill "$folder/bin/no-scanmill"
+scanmill batch --status without-program >status.txt && fail "a failed chunk is not noticed: $(cat status.txt)"
+again=$(grep -o 'rm -f .*' status.txt) || fail "no command runs the failed chunks again: $(cat status.txt)"
+sh -c "$again" >snakemake.txt 2>&1 || fail "snakemake, again: $(tail -5 snakemake.txt)"
+same_result one-library without-program/result
+passed "snakemake, with the program: the command of --status gives the results of one run"

@@ -196,7 +196,7 @@ TEST_F(Killed, SecondBatchIntoTheFolder_IsRefused_UntilTheFirstIsKilled) {
     for (const char* command : {"batch", "run"}) {
         const ProgramResult second =
             command[0] == 'b' ? run_batch() : scanmill({"run", "w.yaml", "scans/scan_01.xyz", "-o", "out"});
-        EXPECT_EQ(second.exit_code, 1);
+        EXPECT_EQ(second.exit_code, 2);
         EXPECT_THAT(second.err, testing::AllOf(HasSubstr("the output folder 'out' is in use: process "),
                                                HasSubstr(fmt::format("process {} (", batch.process())),
                                                HasSubstr("batch b.yaml -o out -j 1"), HasSubstr("hint: ")));

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <regex>
 
+#include "support/report_page.hpp"
+
 namespace scanmill::test {
 namespace {
 
@@ -33,13 +35,24 @@ protected:
         return static_cast<std::size_t>(
             std::distance(fs::directory_iterator(folder / "chunks"), fs::directory_iterator()));
     }
-    /// Runs the jobs that Slurm would run, the last chunk first.
-    void run_with_slurm(const fs::path& folder) {
+    /// Makes the commands of Slurm write their arguments to calls.txt, each call a line; `sbatch` ends with this.
+    void replace_slurm(const std::string& sbatch) {
+        fs::create_directories(folder_ / "bin");
+        for (const std::string command : {"sbatch", "scontrol", "scancel"})
+            fs::permissions(folder_.write("bin/" + command, fmt::format("#!/bin/sh\necho {} \"$@\" >> '{}'\n{}\n",
+                                                                        command, (folder_ / "calls.txt").string(),
+                                                                        command == "sbatch" ? sbatch : "")),
+                            fs::perms::owner_all);
+    }
+    /// Runs the chunks as Slurm would, the last one first.
+    void run_chunks(const fs::path& folder) {
         std::string commands = fmt::format("cd '{}'\nexport SLURM_CPUS_PER_TASK=1\n", folder.string());
         for (std::size_t chunk = chunks(folder); chunk >= 1; --chunk)
             commands += fmt::format("SLURM_ARRAY_TASK_ID={} sh run.sbatch || exit\n", chunk);
         EXPECT_EQ(shell(commands), 0) << content_of(folder_ / "shell.txt");
-        shell(fmt::format("cd '{}'\nsh merge.sbatch\n", folder.string()));
+    }
+    int run_merge(const fs::path& folder) {
+        return WEXITSTATUS(shell(fmt::format("cd '{}'\nsh merge.sbatch\n", folder.string())));
     }
     /// Runs the commands of the Snakefile, as Snakemake would.
     void run_with_snakemake(const fs::path& folder) {
@@ -86,7 +99,12 @@ TEST_F(Export, JobsGiveTheOutputsAndDescriptionsOfOneRun_HoweverTheBatchIsNamed)
             const ProgramResult result = exported(scheduler, name, folder.string(), from);
             ASSERT_EQ(result.exit_code, 0) << result.err;
             ASSERT_EQ(chunks(folder), 8u);
-            scheduler == "slurm" ? run_with_slurm(folder) : run_with_snakemake(folder);
+            if (scheduler == "slurm") {
+                run_chunks(folder);
+                run_merge(folder);
+            } else {
+                run_with_snakemake(folder);
+            }
             const std::string whole = many + scheduler + "/result";
             auto found = outputs(whole);
             std::erase_if(found, [](const auto& file) {  // leaves out what the report adds
@@ -109,11 +127,8 @@ TEST_F(Export, ChunkOutOfMemory_FailsAndIsSubmittedAgainWithTwiceTheMemory) {
                         program_file()})
                   .exit_code,
               0);
-    fs::create_directories(folder_ / "bin");
     const fs::path calls = folder_ / "calls.txt";
-    fs::permissions(
-        folder_.write("bin/sbatch", fmt::format("#!/bin/sh\necho \"$@\" >> '{}'\necho 7\n", calls.string())),
-        fs::perms::owner_all);
+    replace_slurm("echo 7");
     const auto job = [&](const std::string& command) {
         return WEXITSTATUS(shell(fmt::format("cd '{}'\nexport SLURM_CPUS_PER_TASK=1 PATH='{}':$PATH {}\n{}\n",
                                              (folder_ / "cluster").string(), (folder_ / "bin").string(),
@@ -129,10 +144,35 @@ TEST_F(Export, ChunkOutOfMemory_FailsAndIsSubmittedAgainWithTwiceTheMemory) {
     EXPECT_EQ(job("sh merge.sbatch 400"), 0) << content_of(folder_ / "shell.txt");
     EXPECT_THAT(content_of(calls), HasSubstr("--array=2 --mem=800M run.sbatch"));
     EXPECT_THAT(content_of(calls), HasSubstr("merge.sbatch 800"));
+    EXPECT_THAT(content_of(calls), HasSubstr("scontrol release 7\n"));
     EXPECT_FALSE(fs::exists(folder_ / "cluster/result"));
 
     EXPECT_EQ(job("sh merge.sbatch 1000000"), 1) << "after the last attempt, the report shows the failure";
     EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("out of memory or disk in chunks 2;"));
+    EXPECT_TRUE(fs::exists(folder_ / "cluster/result/s0.ply"));
+}
+
+TEST_F(Export, RefusedMerge_CancelsTheChunksBeforeTheyRun) {
+    ASSERT_EQ(exported("slurm", "b.yaml", "clu 'ster", folder_.path()).exit_code, 0);
+    replace_slurm("case \"$*\" in *merge.sbatch*) exit 1 ;; *) echo 7 ;; esac");
+    EXPECT_NE(shell(fmt::format("cd '{0}'\nPATH='{0}/bin':$PATH \"clu 'ster/submit.sh\" 3\n", folder_.path().string())),
+              0);
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("the merge was refused, so the chunks were cancelled"));
+    EXPECT_THAT(content_of(folder_ / "calls.txt"),
+                testing::AllOf(HasSubstr("--hold --array=3 run.sbatch"), testing::EndsWith("scancel 7\n")));
+}
+
+/// The page is the last part of the job, so its failure must not hide behind a good merge.
+TEST_F(Export, PageThatCannotBeWritten_FailsTheJob) {
+    if (!has_report_page()) GTEST_SKIP() << no_report_page;
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
+                  "outputs: {'{scan}.ply': voxel-thin}\n");
+    ASSERT_EQ(exported("slurm", "b.yaml", "cluster", folder_.path()).exit_code, 0);
+    fs::create_directories(folder_ / "cluster/result/report.html");
+    run_chunks(folder_ / "cluster");
+    EXPECT_NE(run_merge(folder_ / "cluster"), 0);
+    EXPECT_THAT(content_of(folder_ / "shell.txt"), HasSubstr("report.html' exists and is not a page"));
     EXPECT_TRUE(fs::exists(folder_ / "cluster/result/s0.ply"));
 }
 

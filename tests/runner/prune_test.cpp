@@ -200,7 +200,7 @@ TEST_F(Prune, WhileARunWrites_IsRefused) {
     run("b.xyz");
     const OutputLock lock(folder_ / "out", {"scanmill", "batch"}, [](const std::string&) {});
     const ProgramResult refused = prune("1");
-    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, HasSubstr("the output folder 'out' is in use"));
     EXPECT_THAT(runs(), ElementsAre(1, 2));
     EXPECT_TRUE(exists("sub/a.ply"));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "scanmill/session/report_page.hpp"
 #include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/report_page.hpp"
@@ -197,6 +198,32 @@ TEST_F(ReportPage, ABatchWritesItsPage) {
     EXPECT_EQ(scanmill({"batch", "b.yaml", "-o", "out", "--html", "x.html", "--json"}).exit_code, 2);
 }
 
+TEST_F(ReportPage, LargeRun_ShowsTheCellsWithTheWorstVerdictsAndCountsAll) {
+    for (const char* name : {"a", "b", "c"}) add_scan(name);
+    folder_.write("scans/c.ply", content_of(folder_ / "made/scan.ply").substr(0, 2000));
+    write_batch();
+    night();
+    FilterLibrary library{{plugin_folder()}};
+    const auto page = [&](const PageLimits& limits) {
+        return page_document(
+            {folder_ / "out", std::nullopt}, std::nullopt, {}, library, {}, [](std::string) {}, limits);
+    };
+    const PageDocument two = page({.cells = 2, .pictured = 2});
+    ASSERT_EQ(two.cells.size(), 2u);
+    EXPECT_EQ(two.cells[0].scan, "scans/a.ply");
+    EXPECT_EQ(two.cells[1].scan, "scans/c.ply");
+    EXPECT_EQ(two.counts, (std::map<std::string, std::size_t>{{"failed", 1}, {"new", 2}}));
+    for (const PageTrend& trend : two.trends) EXPECT_LT(trend.cell, 2u);
+    EXPECT_THAT(two.notes, testing::Contains(HasSubstr("shows 2 of 3 cells, those with the worst verdicts")));
+    EXPECT_FALSE(two.cells[0].pictures.empty());
+
+    const PageDocument pictured = page({.cells = 3, .pictured = 2});
+    ASSERT_EQ(pictured.cells.size(), 3u);
+    EXPECT_FALSE(pictured.cells[0].pictures.empty());
+    EXPECT_TRUE(pictured.cells[1].pictures.empty());
+    EXPECT_THAT(pictured.notes, testing::Contains(HasSubstr("2 of 3 cells have pictures")));
+}
+
 TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     folder_.write("page.html", "mine");
     EXPECT_THAT(scanmill({"report", "out", "--html", "new.html"}).err, HasSubstr("there are no records in 'out'"));
@@ -213,6 +240,9 @@ TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
                     HasSubstr("exists and is not a page of this program"));
         EXPECT_EQ(content_of(folder_ / file), before);
     }
+    fs::create_directories(folder_ / "folder");
+    EXPECT_THAT(scanmill({"report", "out", "--html", "folder"}).err,
+                HasSubstr("'folder' exists and is not a page of this program"));
     folder_.write("file", "x");
     EXPECT_THAT(scanmill({"report", "out", "--html", "file/page.html"}).err, HasSubstr("file/page.html"));
 }

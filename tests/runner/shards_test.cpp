@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `batch --shard` and `runs merge`: the merged shards are the run of one machine.
 
+#include <sys/mount.h>
+#include <unistd.h>
+
 #include <functional>
 
 #include "runner/divided_batch.hpp"
@@ -64,6 +67,53 @@ TEST_F(Shards, ExitCodesAndGate_AreThoseOfOneRun) {
     EXPECT_EQ(merged.exit_code, 4) << merged.out << merged.err;
     EXPECT_THAT(merged.out, HasSubstr("b: regressed"));
     EXPECT_THAT(scanmill({"runs", "whole"}).out, HasSubstr("2"));
+}
+
+/// A scan that fails in each of these modes, in a shard of its own.
+TEST_F(Shards, OnlyFailuresOfTheMachine_AskForAnotherRun) {
+    folder_.write("m.yaml",
+                  "scanmill: 1\nname: m\ninputs: {scan: points}\nparameters: {mode: pass}\nsteps:\n"
+                  "  - test-step: {mode: $mode}\noutputs: {'{scan}.ply': test-step.points}\n");
+    const auto code = [&](const std::string& modes) {
+        std::string scans;
+        for (std::size_t i = 0; i < modes.size();) {
+            const std::size_t end = std::min(modes.find(' ', i), modes.size());
+            scans += (scans.empty() ? "" : ", ") + std::string("{path: scans/s") + std::to_string(i) +
+                     ".xyz, set: {mode: " + modes.substr(i, end - i) + "}}";
+            fs::copy_file(folder_ / "scans/s1.xyz", folder_ / ("scans/s" + std::to_string(i) + ".xyz"),
+                          fs::copy_options::skip_existing);
+            i = end + 1;
+        }
+        folder_.write("modes.yaml", "scanmill: 1\nbatch: modes\nscans: [" + scans + "]\nworkflows: m.yaml\n");
+        fs::remove_all(folder_ / "one");
+        return scanmill({"batch", "modes.yaml", "--shard", "1/1", "-o", "one", "-q"}).exit_code;
+    };
+    for (const char* mode : {"fail", "throw", "crash", "exit", "undeclared-metric"}) EXPECT_EQ(code(mode), 1) << mode;
+    for (const char* modes : {"kill", "out-of-memory", "undeclared-metric kill"}) EXPECT_EQ(code(modes), 5) << modes;
+}
+
+/// The user limits the size of files, which another machine does not change.
+TEST_F(Shards, OutputThatMayNotBeWritten_DoesNotAskForAnotherRun) {
+    folder_.write("large.yaml",
+                  "scanmill: 1\nname: large\nsteps:\n  - virtual-scan: {shape: sphere, size: 100 u, views: [12], "
+                  "resolution: 1 u}\noutputs: {'large.ply': virtual-scan}\n");
+    folder_.write("b.yaml", "scanmill: 1\nbatch: b\nworkflows: [large.yaml]\n");
+    ProgramOptions limited = options();
+    limited.file_limit = 1'000'000;
+    const ProgramResult result =
+        scanmill_program({"batch", "b.yaml", "--shard", "1/1", "-o", "p1", "-q", "--no-cache"}, limited);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("File too large"));
+}
+
+/// On a disk that becomes full, the shard is repeated whether an output or the records could not be written.
+TEST_F(Shards, FullDisk_AsksForAnotherRun) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root may mount a small disk";
+    const fs::path disk = folder_ / "p1";
+    fs::create_directories(disk);
+    if (::mount("none", disk.c_str(), "tmpfs", 0, "size=200k") != 0) GTEST_SKIP() << "no disk can be mounted here";
+    EXPECT_EQ(shard("1/1", "p1").exit_code, 5);
+    ::umount(disk.c_str());
 }
 
 TEST_F(Shards, AFolderThatWasMoved_IsMergedAllTheSame) {

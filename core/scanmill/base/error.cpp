@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/base/error.hpp"
 
+#include <cerrno>
+
 namespace scanmill {
 
 Error::Error(std::string sentence) : sentence_(std::move(sentence)), text_(sentence_) {}
@@ -26,6 +28,11 @@ Error&& Error::hint(std::string text) && {
 Error&& Error::remedy(Remedy remedy) && {
     remedy_ = remedy;
     return std::move(*this);
+}
+
+Error Error::of_writing(std::string sentence, int number) {
+    const bool is_of_disk = number == ENOSPC || number == EDQUOT || number == EIO || number == EROFS;
+    return Error(std::move(sentence)).remedy(is_of_disk ? Remedy::use_other_disk : Remedy::none);
 }
 
 Error&& Error::expected(std::string_view forms) && {

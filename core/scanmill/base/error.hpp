@@ -32,7 +32,9 @@ enum class Remedy {
     run_without_workers,
     declare_truth_unit,
     move_to_frame,
-    mesh_points  ///< use only the points of a mesh that is not a surface
+    mesh_points,  ///< use only the points of a mesh that is not a surface
+    use_other_disk,  ///< free space on the disk, or write to another one
+    add_memory  ///< run on a machine, or in a job, with more memory
 };
 
 class __attribute__((visibility("default"))) Error : public std::exception {
@@ -49,6 +51,9 @@ public:
     /// For `throw Error(...).hint(...)`.
     Error&& hint(std::string text) &&;
     Error&& remedy(Remedy remedy) &&;
+    /// An error of the system when a file is written, by its `errno`. Its remedy is another disk if the disk or the
+    /// quota is full, or the disk is broken, which often makes it read-only.
+    static Error of_writing(std::string sentence, int number);
     /// Ends the sentence with "; expected <forms>". finding() is the sentence before this addition.
     Error&& expected(std::string_view forms) &&;
     /// The same error with another sentence.

@@ -29,7 +29,15 @@ namespace fs = std::filesystem;
 
 std::string reason_of(int number) { return std::generic_category().message(number); }
 
-[[noreturn]] void throw_failed() { throw Error("writing failed: {}; the file was not made", reason_of(errno)); }
+[[noreturn]] void throw_failed() {
+    const int number = errno;
+    throw Error::of_writing(fmt::format("writing failed: {}; the file was not made", reason_of(number)), number);
+}
+
+/// `in`: empty, or " in 'FOLDER'".
+[[noreturn]] void throw_unwritable(int number, const std::string& in = {}) {
+    throw Error::of_writing(fmt::format("cannot be written{}: {}", in, reason_of(number)), number);
+}
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
@@ -124,7 +132,7 @@ void move_into_place(const fs::path& part, const fs::path& target, const struct 
     const int reason = errno;
     struct stat ignored;
     const bool is_moved = ::lstat(part.c_str(), &ignored) != 0 && ::lstat(target.c_str(), &ignored) == 0;
-    if (reason != ENOENT || !is_moved) throw Error("cannot be written: {}", reason_of(reason));
+    if (reason != ENOENT || !is_moved) throw_unwritable(reason);
 }
 
 }  // namespace
@@ -151,8 +159,9 @@ void AtomicFile::open_named(const fs::path& folder) {
         descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor_ >= 0) return;
         if (errno != EEXIST) {
+            const int reason = errno;
             temporary_.clear();
-            throw Error("cannot be written: {}", reason_of(errno));
+            throw_unwritable(reason);
         }
     }
 }
@@ -188,7 +197,7 @@ void AtomicFile::commit(Sync sync) {
         if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
             temporary_ = name;
         else if (errno != EEXIST)
-            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+            throw_unwritable(errno, fmt::format(" in '{}'", folder.string()));
     }
     if (::close(std::exchange(descriptor_, -1)) != 0) throw_failed();
     move_into_place(temporary_, target_, status);

@@ -2,6 +2,7 @@
 #include "scanmill/io/unnamed_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,8 +16,9 @@ namespace {
 
 [[noreturn]] void throw_failed(const char* action, int reason) {
     const char* const folder = std::getenv("TMPDIR");
-    throw Error("a temporary file cannot be {} in '{}': {}", action, folder ? folder : "/tmp",
-                std::generic_category().message(reason))
+    throw Error::of_writing(fmt::format("a temporary file cannot be {} in '{}': {}", action, folder ? folder : "/tmp",
+                                        std::generic_category().message(reason)),
+                            reason)
         .hint("set TMPDIR to a folder with more free space");
 }
 

@@ -20,8 +20,9 @@ void RunValues::put(const ValueSlot& slot, const EncodedValue& value) {
     try {
         value.write(file_of(slot));
     } catch (const Error& error) {
-        throw Error("a value of {} cannot be passed to the next step: {}", byte_size_text(value.size()),
-                    error.sentence())
+        throw error
+            .reworded(fmt::format("a value of {} cannot be passed to the next step: {}", byte_size_text(value.size()),
+                                  error.sentence()))
             .hint("set TMPDIR to a folder with more free space");
     }
 }

@@ -17,7 +17,7 @@ static std::string limits_text(const PlannedExpectation& expectation) {
 }
 
 FailureRecord record_of(const Failure& failure) {
-    return {failure.cause, failure.number, failure ? failure.whole().what() : ""};
+    return {failure.cause, failure.number, failure ? failure.whole().what() : "", is_of_machine(failure)};
 }
 
 StepRecord step_record(const RunGraph& graph, const RunNode& node, const NodeReport& report, std::string build) {

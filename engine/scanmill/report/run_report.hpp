@@ -20,6 +20,7 @@ struct FailureRecord {
     Cause cause = Cause::none;
     int number = 0;
     std::string error;
+    bool is_of_machine = false;
 
     explicit operator bool() const { return cause != Cause::none; }
 };
@@ -27,7 +28,10 @@ constexpr auto fields(const FailureRecord*) {
     return std::tuple{
         field("error", &FailureRecord::error, "The error message with its context and its hint.").optional(),
         field("cause", &FailureRecord::cause, "Kind of failure.").optional(),
-        field("number", &FailureRecord::number, "Number of the signal, or the exit code.").optional()};
+        field("number", &FailureRecord::number, "Number of the signal, or the exit code.").optional(),
+        field("of-machine", &FailureRecord::is_of_machine,
+              "Whether another run may succeed with more memory or another disk.")
+            .optional()};
 }
 
 /// An input of a step. It is the output `output` of the step that has the number `step` in the run; for a step that

@@ -163,9 +163,8 @@ fs::path file_of_chunk(const fs::path& folder, std::size_t number) {
 }
 
 static bool has_machine_failure(const RunRecords& records, const RunSummary& run) {
-    return run.failed > 0 && std::ranges::any_of(records.run(run.id).cells, [](const CellRecord& cell) {
-               return is_of_machine(cell.failure.cause, cell.failure.number);
-           });
+    return run.failed > 0 && std::ranges::any_of(records.run(run.id).cells,
+                                                 [](const CellRecord& cell) { return cell.failure.is_of_machine; });
 }
 
 static ChunkStatus status_of(const fs::path& folder, std::size_t number) {

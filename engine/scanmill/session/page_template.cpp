@@ -19,10 +19,18 @@ static std::string content_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string page_template(const std::string& name) {
+/// Empty if there is none.
+static fs::path template_file(const std::string& name) {
     std::error_code ignored;
-    for (const fs::path& file : shared_places("report/" + name))
-        if (fs::exists(file, ignored)) return content_of(file);
+    for (fs::path& file : shared_places("report/" + name))
+        if (fs::exists(file, ignored)) return std::move(file);
+    return {};
+}
+
+bool has_page_template(const std::string& name) { return !template_file(name).empty(); }
+
+std::string page_template(const std::string& name) {
+    if (const fs::path file = template_file(name); !file.empty()) return content_of(file);
     throw Error("this program was built without the report page")
         .hint("build it where Node and npm are installed; reports as text, markdown, JUnit and JSON need no page");
 }

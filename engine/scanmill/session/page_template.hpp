@@ -10,6 +10,9 @@
 
 namespace scanmill {
 
+/// Whether the program was built with this template.
+bool has_page_template(const std::string& name);
+
 /// The template with this file name. Throws Error if the program was built without it.
 std::string page_template(const std::string& name);
 

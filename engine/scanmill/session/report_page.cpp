@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -42,6 +43,16 @@ std::string unit_of(const CellValue& value) {
 using CellNames = std::tuple<std::string, std::string, std::string>;
 CellNames key_of(const CellComparison& cell) { return {cell.workflow, cell.scan, cell.variant}; }
 
+/// The first cells by verdict, the worst first, as many as `most`; in their order.
+std::vector<std::size_t> most_important(const std::vector<CellComparison>& cells, std::size_t most) {
+    std::vector<std::size_t> chosen(cells.size());
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    std::ranges::stable_sort(chosen, {}, [&](std::size_t cell) { return cells[cell].verdict; });
+    chosen.resize(std::min(most, chosen.size()));
+    std::ranges::sort(chosen);
+    return chosen;
+}
+
 /// Makes the data of one page.
 class PageMaker {
 public:
@@ -65,6 +76,20 @@ public:
         for (const std::vector<std::string>& row : rule_table(comparison_, most_rules).rows)
             page_.rules.push_back({row[0], row[1], row[2], static_cast<std::size_t>(std::stoull(row[3])), row[4],
                                    row[5], static_cast<std::size_t>(std::stoull(row[6]))});
+    }
+
+    /// Removes the cells for which the page has no room, after the facts about all cells were added.
+    void limit_cells(std::size_t most) {
+        const std::size_t all = comparison_.cells.size();
+        if (all <= most) return;
+        std::vector<CellComparison> kept;
+        for (const std::size_t cell : most_important(comparison_.cells, most))
+            kept.push_back(std::move(comparison_.cells[cell]));
+        comparison_.cells = std::move(kept);
+        page_.notes.push_back(
+            fmt::format("the page shows {} of {} cells, those with the worst verdicts; counts and rules "
+                        "are those of all cells, changes those of the shown ones",
+                        most, all));
     }
 
     void add_cells() {
@@ -119,17 +144,21 @@ public:
         std::set<std::int64_t> accepted;
         for (const Acceptance& acceptance : records.acceptances())
             if (!acceptance.revoked_at) accepted.insert(acceptance.run);
+        std::set<CellNames> shown;
+        for (const CellComparison& cell : comparison_.cells) shown.insert(key_of(cell));
         std::map<std::pair<CellNames, std::string>, std::vector<std::optional<double>>> values;
         for (std::size_t night = 0; night < nights.size(); ++night) {
             const RunSummary& run = nights[night];
             page_.runs.push_back({run.id, run.started, accepted.contains(run.id), *run.outcome});
-            for (const CellComparison& cell : compare(records.run(run.id), nullptr).cells)
+            for (const CellComparison& cell : compare(records.run(run.id), nullptr).cells) {
+                if (!shown.contains(key_of(cell))) continue;
                 for (const std::string& metric : metrics)
                     if (const auto value = number_of(cell, metric); value && std::isfinite(value->metric.value)) {
                         auto& trend = values[{key_of(cell), metric}];
                         trend.resize(nights.size());
                         trend[night] = value->metric.value;
                     }
+            }
         }
         for (const PageCell& cell : page_.cells)
             for (const std::string& metric : metrics)
@@ -139,8 +168,11 @@ public:
     }
 
     void add_previews(FilterLibrary& library, const PreviewSettings& settings, const RunDetails* accepted,
-                      const std::function<void(std::string)>& warn) {
-        find_wishes(accepted);
+                      const std::function<void(std::string)>& warn, std::size_t most) {
+        find_wishes(accepted, most_important(comparison_.cells, most));
+        if (comparison_.cells.size() > most)
+            page_.notes.push_back(fmt::format("{} of {} cells have pictures, those with the worst verdicts", most,
+                                              comparison_.cells.size()));
         const std::vector<Preview> previews = make_previews(folder_, wishes_, library, settings, warn);
         std::set<std::string> reasons;
         for (std::size_t wish = 0; wish < wishes_.size(); ++wish) {
@@ -324,14 +356,17 @@ private:
         return wish;
     }
 
-    void find_wishes(const RunDetails* accepted) {
+    void find_wishes(const RunDetails* accepted, const std::vector<std::size_t>& pictured) {
         std::map<CellNames, const CellRecord*> before;
         StepsByNode steps_before;
         if (accepted) {
             steps_before = steps_by_node(*accepted);
             for (const CellRecord& cell : accepted->cells) before[{cell.workflow, cell.scan, cell.variant}] = &cell;
         }
-        for (const auto& [id, record] : record_of_cell_) {
+        for (const std::size_t id : pictured) {
+            const auto recorded = record_of_cell_.find(id);
+            if (recorded == record_of_cell_.end()) continue;
+            const CellRecord* record = recorded->second;
             const CellFiles files(*record, steps_, library_, run_.start.working_folder);
             const CellFile scan = files.scan(), truth = files.truth();
             if (std::optional<PreviewWish> result = wish_for(*record, steps_, run_.start.working_folder))
@@ -438,18 +473,19 @@ private:
 
 PageDocument page_document(const RecordedRun& which, const std::optional<RecordedRun>& against,
                            const CommandFor& command, FilterLibrary& library, const PreviewSettings& settings,
-                           const std::function<void(std::string)>& warn) {
+                           const std::function<void(std::string)>& warn, const PageLimits& limits) {
     Comparison comparison = compare_recorded(which, against, command);
     const RunRecords records = RunRecords::read(which.folder / records_file);
     RunDetails run = records.run(comparison.run.id);
     std::optional<RunDetails> accepted;
     if (comparison.accepted && comparison.accepted_folder.empty()) accepted = records.run(comparison.accepted->id);
     PageMaker maker(which.folder, std::move(run), std::move(comparison), library);
+    maker.limit_cells(limits.cells);
     maker.add_cells();
     maker.add_changes();
     maker.add_metrics();
     maker.add_trends(records);
-    maker.add_previews(library, settings, accepted ? &*accepted : nullptr, warn);
+    maker.add_previews(library, settings, accepted ? &*accepted : nullptr, warn, limits.pictured);
     return maker.finished();
 }
 

@@ -19,11 +19,20 @@ inline constexpr const char* report_page = "page.html";  ///< name of the templa
 /// and logs from the records; the values of the last `most_nights` runs of the batch; and previews, which are made
 /// where they are missing (make_previews()).
 ///
+/// A page has at most `limits.cells` cells, and pictures of at most `limits.pictured` of them: the cells with the worst
+/// verdicts, and of equal ones the first. Counts and rules are those of all cells,
+/// changes those of the shown ones.
+///
 /// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
-/// largest first, and then pictures, and a note says so.
+/// largest first, and then pictures. A note says what is left out.
+///
+/// Cost: reads the records of the compared runs and of `most_nights` earlier ones, and makes the missing previews.
 constexpr std::size_t most_nights = 30;
+struct PageLimits {
+    std::size_t cells = 5000, pictured = 1000;
+};
 PageDocument page_document(const RecordedRun& which, const std::optional<RecordedRun>& against,
                            const CommandFor& command, FilterLibrary& library, const PreviewSettings& settings,
-                           const std::function<void(std::string)>& warn);
+                           const std::function<void(std::string)>& warn, const PageLimits& limits = {});
 
 }  // namespace scanmill

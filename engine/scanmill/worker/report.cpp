@@ -2,7 +2,6 @@
 #include "scanmill/worker/report.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <set>
 
 namespace scanmill {
@@ -47,13 +46,13 @@ Outcome RunReport::outcome() const {
     return worst;
 }
 
-bool is_of_machine(Cause cause, int number) {
-    return cause == Cause::output || (cause == Cause::signal && number == SIGKILL);
+bool is_of_machine(const Failure& failure) {
+    const Remedy remedy = failure.error.remedy();
+    return failure && (remedy == Remedy::use_other_disk || remedy == Remedy::add_memory);
 }
 
 bool RunReport::has_machine_failure() const {
-    return std::ranges::any_of(
-        cells, [](const CellReport& cell) { return is_of_machine(cell.failure.cause, cell.failure.number); });
+    return std::ranges::any_of(cells, [](const CellReport& cell) { return is_of_machine(cell.failure); });
 }
 
 bool RunReport::has_fault() const {

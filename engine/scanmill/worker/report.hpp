@@ -50,10 +50,6 @@ constexpr std::array<std::string_view, 10> names_of(const Cause*) {
     return {"", "refused", "expectation", "exception", "memory", "time", "signal", "exit", "output", "fault"};
 }
 
-/// Whether another run of the same work may succeed on a machine with more memory or disk: the system killed the worker
-/// process, as it does when memory runs out, or a file could not be written. `number`: of the signal.
-bool is_of_machine(Cause cause, int number);
-
 struct Failure {
     Cause cause = Cause::none;
     int number = 0;  ///< number of the signal, or the exit code
@@ -70,6 +66,11 @@ constexpr auto fields(const Failure*) {
     return std::tuple{field("cause", &R::cause), field("number", &R::number), field("error", &R::error),
                       field("scan", &R::scan), field("equal-scan", &R::equal_scan)};
 }
+
+/// Whether another run of the same work may succeed on a machine with more memory or another disk. That is so if memory
+/// ran out although the step had no limit, if the system killed the worker process, as it does when memory runs out,
+/// and if a disk was full or broken.
+bool is_of_machine(const Failure& failure);
 
 /// Resources that a job used, and the log of its process.
 struct Effort {

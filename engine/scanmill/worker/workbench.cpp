@@ -52,7 +52,8 @@ Error out_of_memory(u64 limit, u64 peak) {
         fmt::format("the largest resident size was {}, including mapped files", byte_size_text(peak));
     if (limit == 0)
         return Error("the machine is out of memory: {}", used)
-            .hint("thin the scan first, or use a machine with more memory");
+            .hint("thin the scan first, or use a machine with more memory")
+            .remedy(Remedy::add_memory);
     return Error("memory limit exceeded: the limit is {}; {}", byte_size_text(limit), used)
         .hint("raise the limit, or thin the scan first");
 }
@@ -182,7 +183,10 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     written.kind = kind_of(value);
     std::error_code trouble;
     fs::create_directories(work.file.parent_path(), trouble);
-    if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
+    if (trouble)
+        throw Error::of_writing(
+            fmt::format("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message()),
+            trouble.value());
     WriteOptions options;
     CountedWarnings warnings;
     options.on_warning = [&](const std::string& text) { warnings.add(text); };

@@ -219,11 +219,12 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
     Error error("the worker process was ended by the signal {} ({}); its largest memory was {}{}",
                 name ? fmt::format("SIG{}", name) : std::to_string(end.signal), meaning ? meaning : "unknown",
                 byte_size_text(peak_memory), last_line(log));
-    if (end.signal == SIGKILL)
-        error.set_hint(
+    if (end.signal != SIGKILL) return error;
+    return std::move(error)
+        .hint(
             "the system may have run out of memory and ended the largest process; `limits: {memory: …}` stops a step "
-            "before that happens");
-    return error;
+            "before that happens")
+        .remedy(Remedy::add_memory);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
+
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -59,6 +61,14 @@ TEST(Error, ThrownWithAHint_IsCaughtAsAStandardException) {
     } catch (const std::exception& error) {
         EXPECT_STREQ(error.what(), "needs 1\nhint: give one");
     }
+}
+
+TEST(Error, OfWriting_AsksForAnotherDiskIfThisOneIsFullOrBroken) {
+    for (const int number : {ENOSPC, EDQUOT, EIO, EROFS})
+        EXPECT_EQ(Error::of_writing("x", number).remedy(), Remedy::use_other_disk) << number;
+    for (const int number : {EACCES, EFBIG, ENOENT})
+        EXPECT_EQ(Error::of_writing("x", number).remedy(), Remedy::none) << number;
+    EXPECT_EQ(Error::of_writing("x", ENOSPC).reworded("y").remedy(), Remedy::use_other_disk);
 }
 
 TEST(Error, LayerThatRethrows_AddsItsFrameToTheSameError) {

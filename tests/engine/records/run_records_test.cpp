@@ -257,7 +257,7 @@ TEST_F(Records, OfAnotherLayout_NameTheProgramThatWroteThem) {
 /// If this number changes, files of version 0.1.0 need a conversion, or the command that makes one.
 TEST_F(Records, Layout_IsThatOfTheFirstVersion) {
     RunRecords::append_to(file());
-    EXPECT_EQ(SQLite::Database(file().string()).execAndGet("PRAGMA user_version").getInt(), 36309718);
+    EXPECT_EQ(SQLite::Database(file().string()).execAndGet("PRAGMA user_version").getInt(), 215950605);
 }
 
 TEST_F(Records, ARunAfterAnotherOfEqualNodes_CountsEachNodeOnce) {
