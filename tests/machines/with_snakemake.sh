@@ -21,5 +21,6 @@ ln -s scanmill "$folder/bin/no-scanmill"
 scanmill batch --status without-program >status.txt && fail "a failed chunk is not noticed: $(cat status.txt)"
 again=$(grep -o 'rm -f .*' status.txt) || fail "no command runs the failed chunks again: $(cat status.txt)"
 sh -c "$again" >snakemake.txt 2>&1 || fail "snakemake, again: $(tail -5 snakemake.txt)"
+rm "$folder/bin/no-scanmill"
 same_result one-library without-program/result
 passed "snakemake, with the program: the command of --status gives the results of one run"
