@@ -44,6 +44,9 @@ void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help);
 /// gate_tripped if the gate tripped; otherwise some_failed if a cell failed or, with `strict`, is doubtful.
 int exit_code_of(const Comparison& comparison, bool strict);
 
+/// The largest value of `--jobs`.
+inline constexpr unsigned most_jobs = 1024;
+
 /// Prints warnings on stderr; prints equal sentences only once.
 Warn warning_printer();
 

@@ -23,6 +23,7 @@ struct Options {
     std::filesystem::path folder;
     std::string against, who, why, metric, format = "text", table;
     std::optional<std::int64_t> run;
+    std::optional<unsigned> jobs;
     std::string acknowledge, sheet;
     std::filesystem::path html;
     bool accept = false, revoke = false, strict = false, json = false;
@@ -120,10 +121,10 @@ int report(const Options& options) {
     }
     const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
     if (!options.sheet.empty()) {
-        write_sheet_file(options.html, which, options.sheet);
+        write_sheet_file(options.html, which, options.sheet, options.jobs);
         return exit_code_of(compare_recorded(which, std::nullopt, {}), options.strict);
     }
-    if (!options.html.empty()) write_page_file(options.html, which, against);
+    if (!options.html.empty()) write_page_file(options.html, which, against, options.jobs);
     const Comparison comparison = compare_recorded(which, against, reproducing_command);
     if (!options.metric.empty()) require_metric(options.metric, comparison);
     if (!options.html.empty()) return exit_code_of(comparison, options.strict);
@@ -181,6 +182,13 @@ void add_report(CLI::App& app, Action& chosen) {
                                             "a folder of scans, or . for all parts of the run");
     sheet->needs(html)->check(CLI::Validator(
         [](const std::string& parts) { return parts.empty() ? "the name of the parts is empty" : std::string(); }, ""));
+    command
+        .add_option(
+            "-j,--jobs", options.jobs,
+            "Number of worker processes that make previews; 0: they are made in the command's process. Default: the "
+            "number of cores")
+        ->needs(html)
+        ->check(CLI::Range(0u, most_jobs));
     command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     CLI::Option* json = command.add_flag("--json", options.json, "Print the result as JSON");
     format->excludes(json);

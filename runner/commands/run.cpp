@@ -65,8 +65,6 @@ struct BatchOptions {
     ExecuteOptions execute;
 };
 
-constexpr unsigned most_jobs = 1024;
-
 // A signal handler may only write to a variable of this type.
 volatile std::sig_atomic_t interrupt_requested = 0;
 
@@ -328,7 +326,8 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     }
     if (!options_.html.empty() && !report.interrupted && number != 0) {
         try {
-            write_page_file(options_.html, {options_.session.output_folder, number}, std::nullopt);
+            write_page_file(options_.html, {options_.session.output_folder, number}, std::nullopt,
+                            options_.session.jobs);
         } catch (const Error& error) {
             print(error, false);
             code = std::max<int>(code, some_failed);

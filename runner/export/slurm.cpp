@@ -49,7 +49,7 @@ fi
 @merge@
 code=$?
 case $code in 0 | 1 | 4) ;; *) exit $code ;; esac  # nothing was merged
-@page@
+@page@ -j @cores@
 page=$?
 case $page in 0 | 1 | 4) exit $code ;; *) exit $page ;; esac  # 1, 4: the verdict again
 )";
@@ -107,7 +107,8 @@ Scripts slurm_scripts(const ExportPlan& plan) {
                                              {"folder", folder},
                                              {"submit", shell_word(shell_word(plan.folder / "submit.sh"))},
                                              {"merge", merge_command(plan)},
-                                             {"page", page_command(plan)}});
+                                             {"page", page_command(plan)},
+                                             {"cores", std::to_string(plan.cores)}});
     scripts["submit.sh"] = filled(submit, {{"folder", folder}, {"megabytes", std::to_string(plan.megabytes)}});
     return scripts;
 }

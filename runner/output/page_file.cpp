@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 #include "commands/common.hpp"
 #include "output/reproduce.hpp"
@@ -17,6 +15,7 @@
 #include "scanmill/session/inspection_sheet.hpp"
 #include "scanmill/session/page_template.hpp"
 #include "scanmill/session/report_page.hpp"
+#include "scanmill/session/session.hpp"
 
 namespace scanmill::runner {
 
@@ -36,9 +35,9 @@ void require_replaceable(const std::filesystem::path& file) {
             .hint("choose another name for the page");
 }
 
-PreviewSettings preview_settings() {
+PreviewSettings preview_settings(std::optional<unsigned> jobs) {
     PreviewSettings settings;
-    settings.jobs = std::max(1u, std::thread::hardware_concurrency());
+    settings.jobs = jobs.value_or(usable_cores());
     settings.worker_command = {"/proc/self/exe", "worker"};
     return settings;
 }
@@ -61,21 +60,22 @@ void write(const std::filesystem::path& file, std::string page, const Document& 
 }  // namespace
 
 void write_page_file(const std::filesystem::path& file, const RecordedRun& which,
-                     const std::optional<RecordedRun>& against) {
+                     const std::optional<RecordedRun>& against, std::optional<unsigned> jobs) {
     std::string page = page_template(report_page);
     require_replaceable(file);
     FilterLibrary library = open_library();
     const PageDocument document =
-        page_document(which, against, reproducing_command, library, preview_settings(), warning_printer());
+        page_document(which, against, reproducing_command, library, preview_settings(jobs), warning_printer());
     write(file, std::move(page), document);
     fmt::print("the page of {} is {}\n", printable_line(document.batch), printable_line(file.string()));
 }
 
-void write_sheet_file(const std::filesystem::path& file, const RecordedRun& which, const std::string& parts) {
+void write_sheet_file(const std::filesystem::path& file, const RecordedRun& which, const std::string& parts,
+                      std::optional<unsigned> jobs) {
     std::string page = page_template(sheet_page);
     require_replaceable(file);
     FilterLibrary library = open_library();
-    const SheetDocument document = sheet_document(which, parts, library, preview_settings(), warning_printer());
+    const SheetDocument document = sheet_document(which, parts, library, preview_settings(jobs), warning_printer());
     write(file, std::move(page), document);
     fmt::print("the {} of {} {} {}\n", by_count(document.sheets.size(), "sheet", "sheets"),
                count_text(document.sheets.size(), "part", "parts"), by_count(document.sheets.size(), "is", "are in"),
