@@ -129,11 +129,9 @@ bench-robustness: deps ## measure how much noise and how few points the reconstr
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
 	$$(tools/python_environment.sh bench/peers/requirements.txt build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
 
-bench-scale: deps ## run 1,000 small scans on simulated nodes of a Slurm, and see what grows with a million; needs root for Slurm
-	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target scanmill scanmill-delaunay scanmill-alpha-solid
-	python3 bench/scale/scale.py build/bench/bin/scanmill
-	python3 bench/scale/simulate.py build/bench/bin/scanmill
+bench-scale: release ## run 1,000 small scans on simulated nodes of a Slurm, and see what grows with a million; needs Node, and root for Slurm
+	python3 bench/scale/scale.py build/release/bin/scanmill
+	python3 bench/scale/simulate.py build/release/bin/scanmill
 
 fuzz: ## fuzz every reader, FUZZ_SECONDS=60 for each, until the first finding
 	tools/deps.sh

@@ -45,7 +45,6 @@ class Measured:
     chunks: int = 0
     merge: float = 0
     report: float = 0
-    page: float = 0
 
 
 def run(command, **more):
@@ -113,13 +112,17 @@ class Bench:
         begin = time.monotonic()
         run(["scanmill", "report", case_folder / "result"], env=environment)
         measured.report = time.monotonic() - begin
-        begin = time.monotonic()
-        run(["scanmill", "report", case_folder / "result", "--html", case_folder / "page.html"], env=environment)
-        measured.page = time.monotonic() - begin
         measured.step_seconds, measured.step_cpu, measured.cells = recorded(case_folder / "result")
         while run(["squeue", "-h"]).strip():
             time.sleep(0.1)
         return measured
+
+    def page(self, case):
+        """Seconds of the report page of the last round, whose previews are all new."""
+        case_folder = self.folder / case.name.replace(" ", "-")
+        begin = time.monotonic()
+        run(["scanmill", "report", case_folder / "result", "--html", case_folder / "page.html"], env=self.environment)
+        return time.monotonic() - begin
 
     def differences(self, one, other):
         """The names of the meshes that differ between the results of two cases, or are in one only."""
@@ -147,8 +150,8 @@ def spread(values, digits=1):
 
 def table(cases, results):
     """One row per case: median, least and most over the rounds."""
-    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s | page, s | undisturbed |"
-    yield "|---|---|---|---|---|---|---|---|---|---|"
+    yield "| case | cells | seconds | cells per second | engine, ms per cell | scheduler, s per chunk | merge, s | report, s | undisturbed |"
+    yield "|---|---|---|---|---|---|---|---|---|"
     for case in cases:
         rounds = results[case.name]
         nodes = case.nodes or case.jobs
@@ -160,7 +163,6 @@ def table(cases, results):
                f"{spread(scheduler, 2) if case.nodes and not only_result else '–'} | "
                f"{spread([m.merge for m in rounds], 2) if case.nodes else '–'} | "
                f"{spread([m.report for m in rounds], 2) if case.nodes else '–'} | "
-               f"{spread([m.page for m in rounds]) if case.nodes else '–'} | "
                f"{100 * statistics.median(m.step_cpu / m.step_seconds for m in rounds):.0f} % |")
 
 
@@ -193,7 +195,7 @@ def efficiencies(results):
     work = statistics.median(both.program / both.cells for _, both in pairs)
     yield (f"Merge and the report in text run on one machine and take {1000 * serial:.2f} ms per cell, a chunk {1000 * work:.1f} ms. With cells as small "
            f"as these, they take as long as the chunks on {work / serial:.0f} nodes of one core; with cells of a minute, on {60 / serial:,.0f}. "
-           f"The report page takes {statistics.median(both.page for _, both in pairs):.0f} s more, most of it for the pictures of at most 1,000 cells.")
+           "The report page comes on top, with a time that is limited.")
 
 
 def main():
@@ -227,6 +229,7 @@ def main():
                     if case.rounds is None or number < case.rounds:
                         results[case.name].append(bench.measure(case))
                         print(f"round {number + 1}: {case.name}: {results[case.name][-1].seconds:.1f} s", flush=True)
+            page = bench.page(cases[0])
             wrong = {case.name: bench.differences(cases[0], case) for case in cases if case.batch == "all"}
         finally:
             subprocess.run([HERE / "cluster.sh", "stop", folder], check=False)
@@ -243,6 +246,7 @@ def main():
             "share two cores, so only their result counts.", ""]
     if not obstacle:
         text += [*efficiencies(results), ""]
+    text += [f"The first report page of the {results[cases[0].name][0].cells} cells took {page:.0f} s, most of it for the pictures of at most 1,000 cells.", ""]
     bad = {name: len(files) for name, files in wrong.items() if files}
     text += ["The meshes of all cases are equal, byte for byte." if not bad else f"Meshes that differ from those of `batch -j 1`: {bad}.", "",
              f"Other processes used {others[0]:.1f} cores before the first round and {others[1]:.1f} after the last."]
@@ -250,7 +254,7 @@ def main():
     arguments.into.mkdir(parents=True, exist_ok=True)
     (arguments.into / "results.md").write_text("\n".join(text) + "\n")
     (arguments.into / "results.json").write_text(json.dumps(
-        {"machine": facts, "cases": {name: [dataclasses.asdict(m) for m in rounds] for name, rounds in results.items()}}, indent=1) + "\n")
+        {"machine": facts, "page": page, "cases": {name: [dataclasses.asdict(m) for m in rounds] for name, rounds in results.items()}}, indent=1) + "\n")
     return 1 if bad else 0
 
 

@@ -149,7 +149,8 @@ def main():
         text.append(f"| {row['scans']:,} | {row['cells']:,} | " + " | ".join(show(row[name]) if name in row else "–" for name, show in COLUMNS) + " |")
     text.append(f"| {arguments.goal:,} | {cells:,} | " + " | ".join(
         show(extended(rows, name, cells)) if name in rows[-1] and name in rows[-2] else "–" for name, show in COLUMNS) + " |")
-    text += ["", "*start*: a chunk whose steps are all in the cache; it reads the names of all scans of the batch.", "",
+    text += ["", "*start*: a chunk whose steps are all in the cache; it reads the names of all scans of the batch."
+             " *page*: the first report page, for which the copies need only the pictures of one chunk.", "",
              f"The cache has {files / (2 * SCANS_PER_CHUNK):.1f} files and {size / (2 * SCANS_PER_CHUNK) / 1024:.1f} KiB per cell, the output folder "
              f"{written / (2 * SCANS_PER_CHUNK):.1f} files per cell. At {arguments.goal:,} scans these are {files / (2 * SCANS_PER_CHUNK) * cells / 1e6:.1f} and "
              f"{written / (2 * SCANS_PER_CHUNK) * cells / 1e6:.1f} million files."]
