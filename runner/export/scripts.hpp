@@ -9,18 +9,18 @@
 
 namespace scanmill::runner {
 
-/// What the scripts need to know. Paths are absolute.
+/// What the scripts need to know. The folders are absolute paths.
 struct ExportPlan {
-    std::string name;                 ///< of the batch
-    std::string batch;                ///< file, as the user named it
+    std::string name;                 ///< name of the batch
+    std::string batch;                ///< the file, as the user named it
     std::filesystem::path directory;  ///< the jobs work in it, so that they name scans as a run of the user does
-    std::filesystem::path folder;     ///< of the scripts, the chunks and their outputs
+    std::filesystem::path folder;     ///< has the scripts, the chunks and their outputs
     std::filesystem::path result;     ///< output folder of the merged run
     std::filesystem::path cache;      ///< empty: the default
     std::string program;              ///< command that starts Scanmill
     bool has_page = true;             ///< whether the program can write the report page
     std::size_t chunks = 0;
-    unsigned cores = 1, megabytes = 0, minutes = 0;  ///< of a chunk
+    unsigned cores = 1, megabytes = 0, minutes = 0;  ///< what a chunk gets
     unsigned merge_megabytes = 0, merge_minutes = 0;
 };
 

@@ -19,7 +19,7 @@ static std::string content_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Empty if there is none.
+/// The file of the template; empty if the program was built without it.
 static fs::path template_file(const std::string& name) {
     std::error_code ignored;
     for (fs::path& file : shared_places("report/" + name))

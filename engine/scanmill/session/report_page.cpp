@@ -43,7 +43,7 @@ std::string unit_of(const CellValue& value) {
 using CellNames = std::tuple<std::string, std::string, std::string>;
 CellNames key_of(const CellComparison& cell) { return {cell.workflow, cell.scan, cell.variant}; }
 
-/// The first cells by verdict, the worst first, as many as `most`; in their order.
+/// The indices of the `most` cells with the worst verdicts, of equal ones the first, in the order of the cells.
 std::vector<std::size_t> most_important(const std::vector<CellComparison>& cells, std::size_t most) {
     std::vector<std::size_t> chosen(cells.size());
     std::iota(chosen.begin(), chosen.end(), 0u);

@@ -20,8 +20,7 @@ inline constexpr const char* report_page = "page.html";  ///< name of the templa
 /// where they are missing (make_previews()).
 ///
 /// A page has at most `limits.cells` cells, and pictures of at most `limits.pictured` of them: the cells with the worst
-/// verdicts, and of equal ones the first. Counts and rules are those of all cells,
-/// changes those of the shown ones.
+/// verdicts, and of equal ones the first. Counts and rules are those of all cells, changes those of the shown ones.
 ///
 /// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
 /// largest first, and then pictures. A note says what is left out.
