@@ -14,7 +14,6 @@
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/session/output_lock.hpp"
 #include "scanmill/worker/worker_processes.hpp"
 
 namespace {

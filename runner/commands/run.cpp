@@ -2,7 +2,6 @@
 // The commands `run` and `batch`: make a graph from the command line, run it, and print the report.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "export/status.hpp"
 #include "output/comparison_text.hpp"
 #include "output/error_output.hpp"
 #include "output/page_file.hpp"
@@ -491,45 +491,6 @@ std::vector<std::filesystem::path> files_of(const Batch& batch) {
         for (const auto& [name, input] : scan.inputs) files.insert(files.end(), input.files.begin(), input.files.end());
     }
     return files;
-}
-
-/// The command that runs these chunks of the export in `folder` again.
-std::string repeating_command(const std::filesystem::path& folder, const std::vector<std::string>& chunks) {
-    std::error_code absent;
-    if (const std::filesystem::path submit = folder / "submit.sh"; std::filesystem::exists(submit, absent))
-        return fmt::format("{} {}", shell_word(submit), fmt::join(chunks, ","));
-    // Snakemake goes by these marks; a chunk that failed at its last attempt has one, too.
-    std::string marks;
-    for (const std::string& chunk : chunks) marks += " " + shell_word(folder / fmt::format("done/{:0>4}", chunk));
-    for (const char* rule : {"done/merge", "done/report"}) marks += " " + shell_word(folder / rule);
-    return fmt::format("rm -f{}; snakemake -s {} -j 4", marks, shell_word(folder / "Snakefile"));
-}
-
-/// Prints the states of the chunks in the folder of an export. Returns some_failed if one failed.
-int print_status(const std::filesystem::path& folder, bool json) {
-    const std::vector<ChunkStatus> states = chunk_states(folder);
-    std::map<ChunkState, std::vector<std::string>> chunks;
-    std::size_t cells = 0, failed = 0;
-    for (const ChunkStatus& status : states) {
-        chunks[status.state].push_back(std::to_string(status.chunk));
-        cells += status.cells;
-        failed += status.failed_cells;
-    }
-    if (json) {
-        print_document(json_of(BatchStatusDocument{states}));
-    } else {
-        for (const auto& [state, numbers] : chunks)
-            fmt::print("{:<8} {:>5}  {}\n", name_of(state), numbers.size(), fmt::join(numbers, ","));
-        fmt::print("{} recorded in {}, of which {} failed\n", count_text(cells, "cell is", "cells are"),
-                   count_text(states.size(), "chunk", "chunks"), failed);
-        if (chunks.contains(ChunkState::failed))
-            fmt::print(
-                "a failed chunk was interrupted or killed, or its machine ran out of memory or disk; its cells "
-                "that had finished are in the cache\n"
-                "to run the failed chunks again: {}\n",
-                repeating_command(folder, chunks[ChunkState::failed]));
-    }
-    return chunks.contains(ChunkState::failed) ? some_failed : done;
 }
 
 int run_batch(const BatchOptions& options) {

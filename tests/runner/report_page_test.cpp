@@ -234,7 +234,7 @@ TEST_F(ReportPage, RefusalsLeaveAnEarlierPageAlone) {
     write_batch();
     night();
     EXPECT_EQ(scanmill({"report", "out", "--html", "page.html", "--json"}).exit_code, 2);
-    EXPECT_EQ(scanmill({"report", "out", "-j", "2"}).exit_code, 2) << "there are no previews to make";
+    EXPECT_EQ(scanmill({"report", "out", "-j", "2"}).exit_code, 2) << "only a page needs previews";
     EXPECT_EQ(scanmill({"report", "out", "--html", "one.html", "-j", "1"}).exit_code, 0);
     EXPECT_EQ(scanmill({"report", "out", "--html", "none.html", "-j", "0"}).exit_code, 0);
     for (const char* file : {"out/scanmill.sqlite", "out/a.ply"}) {

@@ -22,8 +22,8 @@ inline constexpr const char* report_page = "page.html";  ///< name of the templa
 /// A page has at most `limits.cells` cells, and pictures of at most `limits.pictured` of them: the cells with the worst
 /// verdicts, and of equal ones the first. Counts and rules are those of all cells, changes those of the shown ones.
 ///
-/// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, views in 3D are left out, the
-/// largest first, and then pictures. A note says what is left out.
+/// The data have at most about 15 MB for up to 80 cells, and 40 MB for more. Above that, the page leaves out its
+/// largest views in 3D, and then its largest pictures. Its notes count what it leaves out.
 ///
 /// Cost: reads the records of the compared runs and of `most_nights` earlier ones, and makes the missing previews.
 constexpr std::size_t most_nights = 30;
